@@ -1,0 +1,1 @@
+"""Protocols, the runner and what it prints."""

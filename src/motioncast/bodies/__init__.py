@@ -1,0 +1,1 @@
+"""Bodies: from joints to a surface."""

@@ -1,0 +1,1 @@
+"""The nouns (skeleton, scene, forecast, card) and their maths; NumPy only."""

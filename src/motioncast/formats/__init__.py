@@ -1,0 +1,1 @@
+"""One file a format: motion files in, scenes out, and back."""

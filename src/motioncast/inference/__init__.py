@@ -1,0 +1,1 @@
+"""From a model and its weights to an answer; NumPy and ONNX Runtime, never torch."""

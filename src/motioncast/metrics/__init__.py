@@ -1,0 +1,1 @@
+"""Errors and other measures: pure functions with masks, one file a family."""

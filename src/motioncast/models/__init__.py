@@ -1,0 +1,1 @@
+"""One file a system, in torch, readable like the method section of its paper."""

@@ -1,0 +1,1 @@
+"""Torch bricks that two or more models share."""

@@ -1,0 +1,1 @@
+"""The contract suite: checks that every model, shipped or yours, must hold."""

@@ -1,0 +1,1 @@
+"""One loop for all models, export to ONNX, and the recipes."""

@@ -1,0 +1,67 @@
+"""Composed scenes: takes of one person or of a couple, put into one world.
+
+People who were recorded together stay together; everybody else is turned about the vertical and set down at
+random. Places are chosen by the last frame of the history and nothing later, and nobody walks through anybody
+else: an arrangement in which two strangers come closer than arm's length is drawn again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+PERSONAL_SPACE_M = 0.6
+"""Strangers' pelvises never come closer than this."""
+
+TRIES = 20
+
+
+def turned(positions: np.ndarray, angle: float) -> np.ndarray:
+    """Positions ``(..., 3)`` turned about the vertical axis by an angle in radians."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    matrix = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]], positions.dtype)
+    return positions @ matrix.T
+
+
+def arrange(
+    groups: Sequence[np.ndarray], now: int, random: np.random.Generator, radius_m: float = 2.5, pelvis: int = 0
+) -> np.ndarray | None:
+    """Groups of people set down in one world.
+
+    Args:
+        groups: For each group ``(time, people, joints, 3)``.
+        now: Last frame of the history; each group's middle in that frame is what is placed.
+        random: Source of angles and places.
+        radius_m: Groups stand within this distance of the origin at that moment.
+        pelvis: Index of the joint that stands for a person.
+
+    Returns:
+        ``(time, all people, joints, 3)`` float32, or None if no arrangement was found.
+
+    Example:
+        >>> one = np.zeros((20, 1, 15, 3), np.float32)
+        >>> scene = arrange([one, one], 9, np.random.default_rng(0))
+        >>> scene.shape, bool(np.linalg.norm(scene[0, 0, 0] - scene[0, 1, 0]) >= PERSONAL_SPACE_M)
+        ((20, 2, 15, 3), True)
+    """
+    for _ in range(TRIES):
+        placed = []
+        for group in groups:
+            middle = group[now, :, pelvis].mean(0) * np.array([1, 1, 0], np.float32)
+            distance, bearing = radius_m * np.sqrt(random.uniform()), random.uniform(0, 2 * np.pi)
+            place = distance * np.array([np.cos(bearing), np.sin(bearing), 0], np.float32)
+            placed.append(turned(group - middle, random.uniform(0, 2 * np.pi)) + place.astype(np.float32))
+        if _apart(placed, pelvis):
+            return np.concatenate(placed, 1)
+    return None
+
+
+def _apart(groups: Sequence[np.ndarray], pelvis: int) -> bool:
+    """Whether people of different groups keep their personal space all the time."""
+    for number, group in enumerate(groups):
+        for other in groups[:number]:
+            difference = group[:, :, None, pelvis, :2] - other[:, None, :, pelvis, :2]
+            if (np.square(difference).sum(-1) < PERSONAL_SPACE_M**2).any():
+                return False
+    return True

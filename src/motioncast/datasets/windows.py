@@ -1,0 +1,79 @@
+"""Windows of takes: a history and the future that followed, cut at a fixed stride."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from motioncast.core.scene import Scene
+from motioncast.core.skeleton import Skeleton
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Windows:
+    """Many windows of the same length.
+
+    Attributes:
+        positions: ``(windows, time, people, joints, 3)`` float32, metres, z up.
+        observed: ``(windows, time, people, joints)`` bool.
+        takes: The take that each window comes from; takes, not windows, are independent.
+        starts: First frame of each window within its take.
+        history: Frames of history; the others are the future.
+    """
+
+    positions: np.ndarray
+    observed: np.ndarray
+    takes: tuple[str, ...]
+    starts: tuple[int, ...]
+    history: int
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+    @property
+    def past(self) -> tuple[np.ndarray, np.ndarray]:
+        """Positions and mask of the histories: all that a model may see."""
+        return self.positions[:, : self.history], self.observed[:, : self.history]
+
+    @property
+    def future(self) -> tuple[np.ndarray, np.ndarray]:
+        """Positions and mask of what really happened."""
+        return self.positions[:, self.history :], self.observed[:, self.history :]
+
+
+def every(scene: Scene, fps: float, skeleton: Skeleton) -> Scene:
+    """Every n-th frame of a scene, on another skeleton: exact samples, no frame looks at its neighbours.
+
+    Raises:
+        ValueError: If the rates are not whole multiples.
+    """
+    step = scene.fps / fps
+    if step != round(step):
+        raise ValueError(f"{scene.fps:g} frames a second are no multiple of {fps:g}; resample the scene")
+    reduced = scene[:: round(step)].on(skeleton)
+    return Scene(reduced.positions, skeleton, fps, reduced.observed, reduced.people, source=scene.source)
+
+
+def cut(scenes: list[Scene], history: int, horizon: int, stride: int = 5) -> Windows:
+    """Windows of scenes of the same number of people.
+
+    A window is left out where somebody is not seen at all in its last frame of history.
+
+    Example:
+        >>> from motioncast.core.skeletons import MRT15
+        >>> scene = Scene(np.zeros((71, 1, 15, 3), np.float32), MRT15, 15)
+        >>> cut([scene], 15, 45).starts
+        (0, 5, 10)
+    """
+    length = history + horizon
+    pieces, masks, takes, starts = [], [], [], []
+    for scene in scenes:
+        for start in range(0, scene.frames - length + 1, stride):
+            mask = scene.observed[start : start + length]
+            if mask[history - 1].any(-1).all():
+                pieces.append(scene.positions[start : start + length])
+                masks.append(mask)
+                takes.append(scene.source)
+                starts.append(start)
+    return Windows(np.stack(pieces), np.stack(masks), tuple(takes), tuple(starts), history)

@@ -1,0 +1,163 @@
+"""SoMoFormer, our own fast variant: a token a joint, and a token for each other person as seen from here.
+
+Joints as tokens, the padded trajectory, the residual in DCT space and one pass for all frames are SoMoFormer's
+(``models/somoformer.py``). What differs, and why:
+
+- One token a joint instead of one a coordinate: a third of the tokens, a ninth of the attention.
+- Each person is described in its own frame (pelvis in the last frame of history, heading of hips and
+  shoulders). Moving or turning the scene moves and turns the answer, exactly, and no training is spent on it.
+- A person's tokens attend to one another and to one token for each other person, which holds that person's
+  motion in the frame of the one who looks. Distance and bearing are in it, so no grid is needed; there is no
+  person embedding, so re-ordering people re-orders the answer; there are no slots, so absent people change
+  nothing.
+
+Shapes: B scenes, H frames of history, F frames of horizon, P people, J joints, d channels.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import torch
+from torch import Tensor, nn
+
+from motioncast.core.skeletons import SKELETONS
+from motioncast.nn.attention import EncoderLayer
+from motioncast.nn.dct import dct_matrix
+from motioncast.nn.gaps import fill_gaps
+from motioncast.nn.losses import mean_distance
+
+FAR = -1e9
+"""Attention score of a token that is not there."""
+
+
+@dataclass(frozen=True)
+class SoMoFormerFastConfig:
+    """Sizes of the model.
+
+    Attributes:
+        skeleton: Name of the skeleton.
+        history: Frames read.
+        horizon: Frames answered.
+        fps: Frames a second.
+        width: Channels d of a token.
+        layers: Encoder layers.
+        heads: Attention heads.
+        feed_forward: Hidden channels of the feed-forward nets.
+        coefficients: DCT coefficients of the answer that are predicted; higher ones stay those of the padding.
+        dropout: Share of dropped channels in training.
+    """
+
+    skeleton: str = "mrt15"
+    history: int = 15
+    horizon: int = 45
+    fps: float = 15.0
+    width: int = 192
+    layers: int = 4
+    heads: int = 8
+    feed_forward: int = 768
+    coefficients: int = 30
+    dropout: float = 0.1
+
+
+class SoMoFormerFast(nn.Module):
+    """World-frame history with masks in, world-frame future of all people out."""
+
+    def __init__(self, config: SoMoFormerFastConfig) -> None:
+        super().__init__()
+        self.config = config
+        skeleton = SKELETONS[config.skeleton]
+        self.joints = len(skeleton)
+        self.sides = [
+            (skeleton.names.index(f"left_{place}"), skeleton.names.index(f"right_{place}"))
+            for place in ("hip", "shoulder")
+        ]
+        pelvis = skeleton.find("pelvis")
+        self.root = [pelvis] if pelvis is not None else list(self.sides[0])
+        h, d = config.history, config.width
+        self.embed = nn.Linear(3 + 3 * h + 3 * (h - 1) + h, d)
+        self.joint = nn.Parameter(torch.randn(self.joints, d) * 0.02)
+        self.see = nn.Sequential(nn.Linear(6 * h * self.joints, d), nn.GELU(), nn.Linear(d, d))
+        self.other = nn.Parameter(torch.randn(d) * 0.02)
+        self.layers = nn.ModuleList(
+            EncoderLayer(d, config.heads, config.feed_forward, config.dropout, norm_first=True)
+            for _ in range(config.layers)
+        )
+        self.norm = nn.LayerNorm(d)
+        self.head = nn.Linear(d, 3 * config.coefficients)
+        nn.init.zeros_(self.head.weight)  # untrained, the model repeats the last pose
+        nn.init.zeros_(self.head.bias)
+        # coefficients -> the future part of the padded trajectory's change
+        answer = dct_matrix(h + config.horizon)[: config.coefficients, h:]
+        self.register_buffer("answer", answer, persistent=False)
+
+    def forward(self, history: Tensor, observed: Tensor, weights: list[Tensor] | None = None) -> Tensor:
+        """The future of all people.
+
+        Args:
+            history: ``(B, H, P, J, 3)`` metres, world, z up.
+            observed: ``(B, H, P, J)`` bool.
+            weights: If given, each layer's attention ``(B * P, heads, J + P, J + P)`` is appended to it.
+
+        Returns:
+            ``(B, F, P, J, 3)`` metres, world.
+        """
+        batch, h, people = history.shape[:3]
+        history = fill_gaps(history, observed)
+        origin, heading = self.stand(history[:, -1])
+        own = turn(history - origin[:, None, :, None], heading[:, None, :, None], back=True)
+        tokens = self.own_tokens(own, observed)
+        others = self.others_as_seen(history, origin, heading)
+        tokens = torch.cat([tokens, others], 2).flatten(0, 1)
+        bias = self.presence(observed)
+        for layer in self.layers:
+            tokens = layer(tokens, bias, weights)
+        joints = self.norm(tokens[:, : self.joints]).view(batch, people, self.joints, -1)
+        change = self.head(joints).view(batch, people, self.joints, 3, self.config.coefficients) @ self.answer
+        future = own[:, -1:] + change.permute(0, 4, 1, 2, 3)
+        return turn(future, heading[:, None, :, None]) + origin[:, None, :, None]
+
+    def loss(self, answer: Tensor, truth: Tensor, observed: Tensor) -> Tensor:
+        """Mean distance of the joints, the error that is reported."""
+        return mean_distance(answer, truth, observed)
+
+    def stand(self, pose: Tensor) -> tuple[Tensor, Tensor]:
+        """Where each person stands, ``(B, P, 3)``, and its heading as a horizontal unit vector, ``(B, P, 2)``."""
+        origin = pose[:, :, self.root].mean(2)
+        across = sum(pose[:, :, left] - pose[:, :, right] for left, right in self.sides)
+        forward = torch.stack([across[..., 1], -across[..., 0]], -1)
+        length = forward.norm(dim=-1, keepdim=True)
+        ahead = torch.cat([torch.ones_like(length), torch.zeros_like(length)], -1)
+        return origin, torch.where(length > 1e-3, forward / length.clamp(min=1e-3), ahead)
+
+    def own_tokens(self, own: Tensor, observed: Tensor) -> Tensor:
+        """A token a joint from its trajectory in the person's frame, ``(B, P, J, d)``."""
+        last = own[:, -1:]
+        steps = (own[:, 1:] - own[:, :-1]) * (self.config.fps / 2)  # in units of 2 m/s
+        features = torch.cat([last, (own - last) * 2, steps], 1).permute(0, 2, 3, 1, 4).flatten(3)
+        return self.embed(torch.cat([features, observed.permute(0, 2, 3, 1).float()], -1)) + self.joint
+
+    def others_as_seen(self, history: Tensor, origin: Tensor, heading: Tensor) -> Tensor:
+        """A token for each person k as person i sees it, ``(B, P of i, P of k, d)``."""
+        apart = history[:, :, None] - origin[:, None, :, None, None]  # B, H, i, k, J, 3
+        seen = turn(apart, heading[:, None, :, None, None], back=True)
+        steps = (seen[:, 1:] - seen[:, :-1]) * (self.config.fps / 2)
+        # far people differ by their bearing, not by kilometres
+        features = torch.cat([torch.tanh(seen / 3), steps, torch.tanh(seen[:, -1:])], 1)
+        return self.see(features.permute(0, 2, 3, 1, 4, 5).flatten(3)) + self.other
+
+    def presence(self, observed: Tensor) -> Tensor:
+        """Added to the scores: nobody attends to absent people, nor to itself as another, ``(B * P, 1, 1, J + P)``."""
+        batch, _, people, _ = observed.shape
+        absent = ~observed[:, -1].any(-1)
+        itself = torch.eye(people, dtype=torch.bool, device=observed.device)
+        hidden = absent[:, None, :] | itself
+        joints = torch.zeros(batch, people, self.joints, dtype=torch.bool, device=observed.device)
+        return torch.cat([joints, hidden], 2).float().flatten(0, 1)[:, None, None] * FAR
+
+
+def turn(vectors: Tensor, heading: Tensor, *, back: bool = False) -> Tensor:
+    """Vectors ``(..., 3)`` turned about the vertical so that +x comes to point along ``heading`` (or back)."""
+    cosine, sine = heading[..., 0], -heading[..., 1] if back else heading[..., 1]
+    x, y, z = vectors.unbind(-1)
+    return torch.stack([cosine * x - sine * y, sine * x + cosine * y, z], -1)

@@ -1,0 +1,62 @@
+"""A transformer encoder layer whose attention can be read."""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor, nn
+from torch.nn import functional
+
+
+class EncoderLayer(nn.Module):
+    """Self-attention and a feed-forward net, each with a residual.
+
+    Args:
+        width: Channels of a token.
+        heads: Attention heads.
+        feed_forward: Hidden channels of the feed-forward net.
+        dropout: Share of dropped channels in training.
+        norm_first: Normalise before each part (pre-norm, GELU) instead of after it (post-norm, ReLU).
+    """
+
+    def __init__(
+        self, width: int, heads: int, feed_forward: int, dropout: float, *, norm_first: bool = False
+    ) -> None:
+        super().__init__()
+        self.heads, self.norm_first, self.dropout = heads, norm_first, dropout
+        self.project = nn.Linear(width, 3 * width)
+        self.merge = nn.Linear(width, width)
+        self.rise = nn.Linear(width, feed_forward)
+        self.fall = nn.Linear(feed_forward, width)
+        self.norm_attention = nn.LayerNorm(width)
+        self.norm_feed = nn.LayerNorm(width)
+        self.drop = nn.Dropout(dropout)
+
+    def forward(self, tokens: Tensor, bias: Tensor, weights: list[Tensor] | None = None) -> Tensor:
+        """Updated tokens.
+
+        Args:
+            tokens: ``(batch, tokens, width)``.
+            bias: Added to the attention scores, broadcastable to ``(batch, heads, tokens, tokens)``.
+            weights: If given, the attention weights ``(batch, heads, tokens, tokens)`` are appended to it.
+        """
+        if self.norm_first:
+            tokens = tokens + self.drop(self.attend(self.norm_attention(tokens), bias, weights))
+            return tokens + self.drop(self.fall(self.drop(functional.gelu(self.rise(self.norm_feed(tokens))))))
+        tokens = self.norm_attention(tokens + self.drop(self.attend(tokens, bias, weights)))
+        return self.norm_feed(tokens + self.drop(self.fall(self.drop(torch.relu(self.rise(tokens))))))
+
+    def attend(self, tokens: Tensor, bias: Tensor, weights: list[Tensor] | None) -> Tensor:
+        """Multi-head self-attention."""
+        batch, count, width = tokens.shape
+        query, key, value = (
+            self.project(tokens).view(batch, count, 3, self.heads, width // self.heads).permute(2, 0, 3, 1, 4)
+        )
+        if weights is None:
+            mixed = functional.scaled_dot_product_attention(
+                query, key, value, attn_mask=bias, dropout_p=self.dropout if self.training else 0.0
+            )
+        else:
+            scores = query @ key.transpose(-1, -2) * (width // self.heads) ** -0.5 + bias
+            weights.append(scores.softmax(-1))
+            mixed = weights[-1] @ value
+        return self.merge(mixed.transpose(1, 2).reshape(batch, count, width))

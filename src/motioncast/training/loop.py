@@ -1,0 +1,165 @@
+"""One training loop for all models.
+
+One process here; several processes and nodes by the same command under Fabric's launcher. bf16 on a GPU,
+float32 on a CPU. A run that was killed goes on where its last checkpoint was written.
+"""
+
+from __future__ import annotations
+
+import copy
+import json
+import math
+import time
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+import torch
+from lightning_fabric import Fabric
+from torch import Tensor, nn
+
+from motioncast.benchmarks import open_cmu
+from motioncast.core.skeletons import SKELETONS
+from motioncast.datasets.windows import Windows, cut
+from motioncast.metrics.position import mpjpe_at
+from motioncast.models import build
+from motioncast.training.batches import STORED_FPS, Sampler
+from motioncast.training.recipe import Recipe
+
+
+def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = print) -> Path:
+    """Train a model and keep the best running mean of its weights.
+
+    Writes ``recipe.json``, ``metrics.jsonl``, ``last.pt`` (to go on from) and ``best.pt`` (weights as float16)
+    into ``out``.
+
+    Args:
+        recipe: What to train.
+        data: Folder with CMU's takes (``datasets.cmu``).
+        out: Folder of the run; if it holds a checkpoint of the same recipe, training goes on.
+        say: Receives a line of progress now and then.
+
+    Returns:
+        Path of ``best.pt``.
+    """
+    out.mkdir(parents=True, exist_ok=True)
+    fabric = Fabric(accelerator="auto", devices="auto" if torch.cuda.is_available() else 1, precision=_precision())
+    fabric.launch()
+    fabric.seed_everything(recipe.seed + fabric.global_rank, verbose=False)
+    raw = build(recipe.model, recipe.sizes)
+    config = raw.config
+    skeleton = SKELETONS[config.skeleton]
+
+    def takes(split: str) -> tuple[list, list]:
+        fps = STORED_FPS if split == "train" else config.fps
+        return open_cmu.single_scenes(data, split, fps, skeleton), open_cmu.couple_scenes(data, split, fps, skeleton)
+
+    sampler = Sampler(*takes("train"), recipe, config.history, config.horizon, config.fps)
+    checks = validation(*takes("validation"), config.history, config.horizon)
+    optimiser = torch.optim.AdamW(raw.parameters(), recipe.learning_rate, weight_decay=recipe.weight_decay)
+    mean = copy.deepcopy(raw).requires_grad_(False).eval()
+    start, best, spent = 0, math.inf, 0.0
+    last = out / "last.pt"
+    if last.exists():
+        state = torch.load(last, map_location="cpu", weights_only=True)
+        raw.load_state_dict(state["model"])
+        mean.load_state_dict(state["mean"])
+        optimiser.load_state_dict(state["optimiser"])
+        start, best, spent = state["step"], state["best"], state["spent_s"]
+        say(f"{recipe.name}: going on from step {start}")
+    (out / "recipe.json").write_text(json.dumps(asdict(recipe), indent=1), encoding="utf-8")
+    model, optimiser = fabric.setup(raw, optimiser)
+    mean = fabric.to_device(mean)
+    batches = sampler.batches(np.random.default_rng([recipe.seed, start, fabric.global_rank]))
+    began, losses = time.perf_counter(), []
+    for step in range(start + 1, recipe.steps + 1):
+        batch = next(batches)
+        for group in optimiser.param_groups:
+            group["lr"] = recipe.learning_rate * pace(step, recipe)
+        seen, observed, truth = (
+            fabric.to_device(torch.from_numpy(array)) for array in (batch.seen, batch.observed, batch.positions)
+        )
+        h = config.history
+        loss = raw.loss(model(seen, observed[:, :h]), truth[:, h:], observed[:, h:])
+        fabric.backward(loss)
+        fabric.clip_gradients(model, optimiser, max_norm=1.0)
+        optimiser.step()
+        optimiser.zero_grad()
+        follow(mean, raw, min(recipe.average, step / (step + 10)))
+        losses.append(loss.item())
+        if step % recipe.validate_every == 0 or step == recipe.steps:
+            scores = {name: ratio(mean, windows, config.fps) for name, windows in checks.items()}
+            score = float(np.mean(list(scores.values())))
+            total = spent + time.perf_counter() - began
+            entry = {"step": step, "loss": float(np.mean(losses)), "validation": scores, "score": score, "seconds": total}
+            losses = []
+            if fabric.is_global_zero:
+                with (out / "metrics.jsonl").open("a", encoding="utf-8") as log:
+                    log.write(json.dumps(entry) + "\n")
+                if score < best:
+                    best = score
+                    _save({name: value.half() for name, value in mean.state_dict().items()}, out / "best.pt")
+                _save(
+                    {
+                        "model": raw.state_dict(), "mean": mean.state_dict(), "optimiser": optimiser.state_dict(),
+                        "step": step, "best": best, "spent_s": total,
+                    },
+                    last,
+                )  # fmt: skip
+            say(f"{recipe.name} {json.dumps(entry)}")
+    return out / "best.pt"
+
+
+def _precision() -> str:
+    return "bf16-mixed" if torch.cuda.is_available() else "32-true"
+
+
+def _save(state: dict, path: Path) -> None:
+    temporary = path.with_suffix(".part")
+    torch.save(state, temporary)
+    temporary.replace(path)
+
+
+def pace(step: int, recipe: Recipe) -> float:
+    """Share of the highest learning rate at a step: a linear rise, then a cosine down to a hundredth."""
+    if step < recipe.warmup:
+        return step / recipe.warmup
+    progress = (step - recipe.warmup) / max(1, recipe.steps - recipe.warmup)
+    return 0.01 + 0.99 * 0.5 * (1 + math.cos(math.pi * progress))
+
+
+@torch.no_grad()
+def follow(mean: nn.Module, model: nn.Module, decay: float) -> None:
+    """Move the running mean of the weights towards the model's."""
+    for average, value in zip(mean.parameters(), model.parameters(), strict=True):
+        average.lerp_(value, 1 - decay)
+
+
+def validation(singles: list, couples: list, history: int, horizon: int) -> dict[str, Windows]:
+    """The windows on which a model is chosen: the couple, and composed scenes of three."""
+    return {
+        "couple": cut(couples, history, horizon),
+        "crowd": open_cmu.crowd(singles, couples, history, horizon),
+    }
+
+
+@torch.no_grad()
+def ratio(model: nn.Module, windows: Windows, fps: float) -> float:
+    """Mean error at three moments (1, 2, 3 s, or the thirds of a shorter horizon) over that of standing still."""
+    device = next(model.parameters()).device
+    answers = []
+    for start in range(0, len(windows), 100):
+        positions, observed = (torch.from_numpy(array[start : start + 100]).to(device) for array in windows.past)
+        answers.append(final(model(positions, observed)).float().cpu().numpy())
+    truth, mask = windows.future
+    horizon = truth.shape[1]
+    moments = [round(horizon * third / 3) - 1 for third in (1, 2, 3)]
+    still = np.broadcast_to(windows.past[0][:, -1:], truth.shape)
+    errors = [mpjpe_at(forecast, truth, mask)[moments].mean() for forecast in (np.concatenate(answers), still)]
+    return float(errors[0] / errors[1])
+
+
+def final(answer: Tensor | list[Tensor]) -> Tensor:
+    """The forecast of the last layer, where a model answers after every layer."""
+    return answer[-1] if isinstance(answer, list) else answer

@@ -1,0 +1,18 @@
+"""The public names: one that disappears or appears is a decision, not an accident."""
+
+from __future__ import annotations
+
+import motioncast
+
+NAMES = """
+""".split()
+
+
+def test_public_names() -> None:
+    assert sorted(motioncast.__all__) == sorted(NAMES), "a public name came or went: change this list and CHANGELOG.md"
+
+
+def test_every_public_name_can_be_had() -> None:
+    for name in motioncast.__all__:
+        assert getattr(motioncast, name) is not None
+    assert set(motioncast.__all__) <= set(dir(motioncast))

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 from cyclopts import Parameter
 
 from motioncast.cli.say import note
 from motioncast.core.scene import Scene
-from motioncast.errors import FormatError, InputError
+from motioncast.errors import InputError
 
 
 @Parameter(name="*")
@@ -18,22 +19,20 @@ from motioncast.errors import FormatError, InputError
 class Reading:
     """How to read a file whose header lies or says nothing."""
 
-    up: Annotated[Literal["x", "y", "z"] | None, Parameter(help="Axis that points up.")] = None
-    unit: Annotated[Literal["m", "cm", "mm", "in"] | None, Parameter(help="Unit of length.")] = None
+    up: Annotated[str | None, Parameter(help="Axis that points up: x, y, z, or one with a minus for down.")] = None
+    unit: Annotated[str | None, Parameter(help="Unit of length: m, cm, mm, inch, cmu, or a number of metres.")] = None
     fps: Annotated[float | None, Parameter(help="Frames a second.")] = None
     map: Annotated[
-        Path | None, Parameter(help='Landmarks of joints that are not recognised: "joint = landmark" a line.')
+        Path | None, Parameter(help='File of lines "joint = landmark" for joints that are not recognised.')
     ] = None
 
 
 AS_THE_FILE_SAYS = Reading()
 
 
-def read_scene(paths: tuple[Path, ...], reading: Reading = AS_THE_FILE_SAYS) -> Scene:
+def read_scene(paths: Sequence[Path], reading: Reading = AS_THE_FILE_SAYS) -> Scene:
     """One scene of these files; says on stderr what the reader inferred or mended."""
-    if not paths:
-        raise InputError("no motion file came; give one scene file, or one motion file a person")
-    from motioncast.formats.load import load_scene
+    from motioncast.formats.load import load_scene, read_map
 
     named = None if reading.map is None else read_map(reading.map)
     scene = load_scene(*paths, up=reading.up, unit=reading.unit, fps=reading.fps, named=named)
@@ -41,21 +40,15 @@ def read_scene(paths: tuple[Path, ...], reading: Reading = AS_THE_FILE_SAYS) -> 
     return scene
 
 
-def read_map(path: Path) -> dict[str, str]:
-    """Landmarks by joint name, from a text of lines ``joint = landmark``; # starts a comment.
+def moment(scene: Scene, seconds: float) -> int:
+    """Number of frames that are history when the scene is asked about after that many seconds.
 
     Raises:
-        FormatError: If a line has no equals sign.
+        InputError: If the moment lies outside the scene.
     """
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"the map {path} cannot be read ({error}); give a text file") from None
-    named: dict[str, str] = {}
-    for number, line in enumerate(lines, 1):
-        joint, equals, landmark = line.partition("#")[0].partition("=")
-        if equals:
-            named[joint.strip()] = landmark.strip()
-        elif joint.strip():
-            raise FormatError(path, f'"{line.strip()}" is not "joint = landmark"', number)
-    return named
+    frames = round(seconds * scene.fps)
+    if not 1 <= frames <= scene.frames:
+        raise InputError(
+            f"--at {seconds:g} lies outside the motion, which lasts {scene.duration_s:.2f} s; give a moment within it"
+        )
+    return frames

@@ -150,7 +150,8 @@ class SoMoFormerFast(nn.Module):
         """Added to the scores: nobody attends to absent people, nor to itself as another, ``(B * P, 1, 1, J + P)``."""
         batch, _, people, _ = observed.shape
         absent = ~observed[:, -1].any(-1)
-        itself = torch.eye(people, dtype=torch.bool, device=observed.device)
+        number = torch.arange(people, device=observed.device)
+        itself = number[:, None] == number
         hidden = absent[:, None, :] | itself
         joints = torch.zeros(batch, people, self.joints, dtype=torch.bool, device=observed.device)
         return torch.cat([joints, hidden], 2).float().flatten(0, 1)[:, None, None] * FAR

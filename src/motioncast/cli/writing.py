@@ -1,0 +1,46 @@
+"""Writing an answer in the format that a file's suffix names."""
+
+from __future__ import annotations
+
+import webbrowser
+from pathlib import Path
+
+from motioncast.core.forecast import Forecast
+from motioncast.core.scene import Scene
+
+
+def write_forecast(forecast: Forecast, path: Path, truth: Scene | None = None, sample: int | None = None) -> list[Path]:
+    """Writes a forecast: all of it as npz, a page as html, the continued motion as any other format.
+
+    Args:
+        forecast: The forecast.
+        path: The file; its suffix tells the format.
+        truth: What really happened, if known.
+        sample: Sample that continues the motion. Default: the most probable one.
+
+    Returns:
+        The files written.
+    """
+    suffix = path.suffix.lower()
+    if suffix == ".html":
+        from motioncast.view.page import write_page
+
+        write_page(forecast, path, truth=truth)
+        return [path]
+    from motioncast.formats.load import save_forecast, save_scene
+
+    if suffix == ".npz":
+        return list(save_forecast(forecast, path, truth))
+    return list(save_scene(turned(forecast, sample), path) if suffix in (".bvh", ".glb") else save_scene(forecast.continued(sample), path))
+
+
+def turned(forecast: Forecast, sample: int | None = None) -> Scene:
+    """The continued motion with rotations on the bones of the history."""
+    from motioncast.core.kinematics import fit_rotations
+
+    return fit_rotations(forecast.continued(sample), forecast.history.select(forecast.people))
+
+
+def open_page(path: Path) -> None:
+    """Shows a page in the user's browser."""
+    webbrowser.open(path.resolve().as_uri())

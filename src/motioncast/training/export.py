@@ -1,0 +1,95 @@
+"""From a trained model to the graph and the card that ship.
+
+The graph takes the world-frame history with masks and gives the world-frame future for any number of people;
+weights are stored as float16 and computed with as float32.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import warnings
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import onnx
+import torch
+from onnx import numpy_helper
+from torch import Tensor, nn
+
+from motioncast.core.card import ModelCard
+from motioncast.training.loop import final
+
+SMALLEST_HALVED = 64
+"""Tensors with fewer numbers keep float32: they are constants of the mathematics, not weights."""
+
+
+class _Graph(nn.Module):
+    """The model with one answer: that of its last layer."""
+
+    def __init__(self, model: nn.Module) -> None:
+        super().__init__()
+        self.model = model
+
+    def forward(self, history: Tensor, observed: Tensor) -> Tensor:
+        return final(self.model(history, observed))
+
+
+def export(model: nn.Module, card: ModelCard, folder: Path) -> ModelCard:
+    """Write ``NAME.onnx`` and ``NAME.json``; returns the card with parameters and checksum filled in.
+
+    Args:
+        model: The trained model.
+        card: Its card.
+        folder: Where the two files go.
+    """
+    joints = len(card.joints)
+    history = torch.randn(2, card.history, 3, joints, 3)
+    observed = torch.ones(2, card.history, 3, joints, dtype=torch.bool)
+    path = folder / f"{card.name}.onnx"
+    axes = {0: "batch", 2: "people"}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the tracer remarks on every shape
+        torch.onnx.export(
+            _Graph(model).eval(),
+            (history, observed),
+            path,
+            input_names=["history", "observed"],
+            output_names=["future"],
+            dynamic_axes={"history": axes, "observed": axes, "future": axes},
+            opset_version=18,
+            dynamo=False,
+        )
+    path.write_bytes(halved(onnx.load(path)).SerializeToString())
+    done = replace(
+        card,
+        parameters=sum(parameter.numel() for parameter in model.parameters()),
+        checksum=hashlib.sha256(path.read_bytes()).hexdigest(),
+    )
+    path.with_suffix(".json").write_text(done.to_json() + "\n", encoding="utf-8")
+    return done
+
+
+def halved(graph: onnx.ModelProto) -> onnx.ModelProto:
+    """The graph with its weights as float16, each cast to float32 where it is used."""
+    casts = []
+    for tensor in graph.graph.initializer:
+        values = numpy_helper.to_array(tensor)
+        if values.dtype == np.float32 and values.size >= SMALLEST_HALVED:
+            name = tensor.name
+            tensor.CopyFrom(numpy_helper.from_array(values.astype(np.float16), f"{name}.half"))
+            casts.append(onnx.helper.make_node("Cast", [f"{name}.half"], [name], to=onnx.TensorProto.FLOAT))
+    nodes = list(graph.graph.node)
+    del graph.graph.node[:]
+    graph.graph.node.extend([*casts, *nodes])
+    onnx.checker.check_model(graph)
+    return graph
+
+
+def load_weights(model: nn.Module, path: Path) -> nn.Module:
+    """The model with the weights of a run's ``best.pt``."""
+    state: Mapping[str, Any] = torch.load(path, map_location="cpu", weights_only=True)
+    model.load_state_dict({name: value.float() for name, value in state.items()})
+    return model.eval()

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from motioncast.core import kinematics
 from motioncast.core.card import ModelCard
 from motioncast.core.scene import Scene
 from motioncast.core.skeleton import Skeleton
@@ -94,3 +95,21 @@ class Forecast:
         """One sample (default: the most probable) as a scene of its own, without the history."""
         positions = self.best if sample is None else self.samples[sample]
         return Scene(positions, self.skeleton, self.fps, people=self.people, source=f"forecast by {self.card.name}")
+
+    def continued(self, sample: int | None = None) -> Scene:
+        """History and one sample (default: the most probable) as one scene that goes on without a step.
+
+        It holds the people who are forecast. Where the history has rotations the forecast gets them too.
+        """
+        past, future = self.history.select(self.people), self.scene(sample)
+        turned = past.rotations is not None and past.offsets is not None
+        if turned:
+            future = kinematics.fit_rotations(future, past)
+        return replace(
+            past,
+            positions=np.concatenate([past.positions, future.positions]),
+            observed=np.concatenate([past.observed, future.observed]),
+            rotations=np.concatenate([past.rotations, future.rotations]) if turned else None,
+            offsets=past.offsets if turned else None,
+            source=f"{past.source}, continued by {self.card.name}",
+        )

@@ -150,6 +150,16 @@ def between(start: np.ndarray, end: np.ndarray) -> np.ndarray:
     return np.where(there, normalise(np.where(cosine > -1 + 1e-9, swing, across)), IDENTITY)
 
 
+def kabsch(rest: np.ndarray, bones: np.ndarray) -> np.ndarray:
+    """The rotations ``(..., 4)`` that bring vectors ``rest`` closest to ``bones``, both ``(..., n, 3)``.
+
+    Least squares by singular values: Kabsch, Acta Crystallographica A32 (1976) 922.
+    """
+    left, _, right = np.linalg.svd(np.swapaxes(bones, -1, -2) @ rest)
+    left[..., 2] *= np.linalg.det(left @ right)[..., None]
+    return from_matrix(left @ right)
+
+
 def slerp(start: np.ndarray, end: np.ndarray, share: np.ndarray | float) -> np.ndarray:
     """Quaternions between two, along the shorter arc; ``share`` 0 gives start, 1 gives end."""
     step = to_axis_angle(multiply(end, conjugate(start)))

@@ -36,6 +36,7 @@ class Recipe:
         drop: Share of joints of the history that are not seen.
         noise_m: Standard deviation of the noise on seen positions.
         validate_every: Steps between two looks at the validation takes.
+        card: What the model's card says of source, limits and exceptions.
         seed: Seed of everything.
     """
 
@@ -60,6 +61,7 @@ class Recipe:
     noise_m: float = 0.002
     validate_every: int = 500
     seed: int = 0
+    card: dict[str, Any] = field(default_factory=dict)
 
 
 def read_recipe(name_or_path: str | Path) -> Recipe:

@@ -1,0 +1,144 @@
+"""Simple guesses, answered like models: what a trained model has to beat.
+
+Defined in frames at 15 a second, the rate of the published settings; at another rate the same velocities are read
+from the resampled history and the same paths are followed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from motioncast.core.card import ModelCard
+from motioncast.core.forecast import Forecast
+from motioncast.core.forecaster import Progress
+from motioncast.core.resample import bridge, sample
+from motioncast.core.scene import Scene
+from motioncast.core.skeleton import STAND_INS
+from motioncast.errors import SceneError
+
+FPS = 15.0
+MEMORY = 8
+"""Frames at 15 a second that a guess looks back."""
+HORIZON = 45
+DAMPING = 0.95
+
+
+def zero_velocity(recent: np.ndarray, scene: Scene, ahead: np.ndarray) -> np.ndarray:
+    """Everybody stays as they are."""
+    return np.zeros((len(ahead), *recent.shape[1:]))
+
+
+def constant_velocity(recent: np.ndarray, scene: Scene, ahead: np.ndarray) -> np.ndarray:
+    """Every joint goes on as it did between the last two frames."""
+    return ahead[:, None, None, None] * (recent[-1] - recent[-2])
+
+
+def neck_velocity(recent: np.ndarray, scene: Scene, ahead: np.ndarray) -> np.ndarray:
+    """The last pose is carried along with the neck's mean velocity over three frames."""
+    neck = place(recent, scene, "neck")
+    return ahead[:, None, None, None] * ((neck[-1] - neck[-4]) / 3)[:, None]
+
+
+def root_velocity_damped(recent: np.ndarray, scene: Scene, ahead: np.ndarray) -> np.ndarray:
+    """The last pose is carried along with the root's mean velocity over seven frames, which fades by 0.95 a frame."""
+    root = place(recent, scene, "pelvis")
+    path = (1 - DAMPING**ahead) / (1 - DAMPING)  # 1 + 0.95 + 0.95^2 + ...: the first step is undamped
+    return path[:, None, None, None] * ((root[-1] - root[-8]) / 7)[:, None]
+
+
+def place(recent: np.ndarray, scene: Scene, landmark: str) -> np.ndarray:
+    """Where a place of the body was, ``(time, people, 3)``; the middle of all joints where it has no joint."""
+    for places in ((landmark,), *STAND_INS.get(landmark, ())):
+        joints = [scene.skeleton.find(name) for name in places]
+        if None not in joints:
+            return recent[:, :, joints].mean(2)
+    return recent.mean(2)
+
+
+Rule = Callable[[np.ndarray, Scene, np.ndarray], np.ndarray]
+
+RULES: dict[str, Rule] = {
+    "zero-velocity": zero_velocity,
+    "constant-velocity": constant_velocity,
+    "neck-velocity": neck_velocity,
+    "root-velocity-damped": root_velocity_damped,
+}
+"""Guesses by name. A rule gets the last frames at 15 a second, the scene and how many such frames to look ahead."""
+
+
+@dataclass(frozen=True, slots=True)
+class SimpleGuess:
+    """A simple guess, answered like a model.
+
+    Example:
+        >>> from motioncast.core.skeletons import MRT15
+        >>> scene = Scene(np.ones((15, 1, 15, 3), np.float32), MRT15, 15)
+        >>> SimpleGuess("zero-velocity").forecast(scene, horizon_s=1).samples.shape
+        (1, 15, 1, 15, 3)
+    """
+
+    name: str
+
+    @property
+    def card(self) -> ModelCard:
+        """The card of the guess."""
+        return ModelCard(
+            self.name, "simple guess", "forecast", "any", MEMORY, HORIZON, FPS,
+            source=(RULES[self.name].__doc__ or "").strip(), data="none", licence="Apache-2.0",
+        )  # fmt: skip
+
+    def forecast(
+        self,
+        scene: Scene,
+        *,
+        horizon_s: float | None = None,
+        samples: int = 1,
+        seed: int = 0,
+        progress: Progress | None = None,
+    ) -> Forecast:
+        """See :class:`motioncast.core.forecaster.Forecaster`."""
+        frames = max(1, round((horizon_s or HORIZON / FPS) * scene.fps))
+        asked = scene.select(present(scene))
+        moved = guess(RULES[self.name], asked, frames)
+        warnings = one_future(self.name, samples)
+        return Forecast(moved[None], scene, asked.people, self.card, seed=seed, warnings=warnings)
+
+
+def guess(rule: Rule, scene: Scene, frames: int) -> np.ndarray:
+    """Positions of the next frames by a rule, ``(frames, people, joints, 3)``; history of any length.
+
+    A joint that is not seen at last is carried from where it was seen last.
+    """
+    window = scene[-(int(MEMORY * scene.fps / FPS) + 4) :]
+    positions = bridge(window.positions, window.observed)
+    step = scene.fps / FPS
+    times = len(positions) - 1 - step * np.arange(MEMORY - 1, -1, -1)
+    recent = sample(positions, np.maximum(times, 0), step)
+    ahead = np.arange(1, frames + 1) / step
+    return (recent[-1] + rule(recent, scene, ahead)).astype(np.float32)
+
+
+def present(scene: Scene) -> list[str]:
+    """The people who are seen in the last frame.
+
+    Raises:
+        SceneError: If there is no frame or nobody is seen.
+    """
+    if not scene.frames:
+        raise SceneError("the scene has no frame; give at least a second of motion")
+    seen = scene.observed[-1].any(-1)
+    if not seen.any():
+        ever = np.flatnonzero(scene.observed.any((1, 2)))
+        last = f"the last one with somebody is {ever[-1]} of {scene.frames}" if len(ever) else "nor in any other"
+        raise SceneError(f"nobody is observed in the last frame ({last}); cut the motion where people are still seen")
+    return [person for person, there in zip(scene.people, seen, strict=True) if there]
+
+
+def one_future(name: str, samples: int) -> tuple[str, ...]:
+    """What is said to a user who asks a model of one future for several."""
+    if samples == 1:
+        return ()
+    return (f'model "{name}" has one future, not {samples}; its doubt is the error radius',)

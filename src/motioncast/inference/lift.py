@@ -1,0 +1,188 @@
+"""From a scene to a model's joints and rate, and from the answer back to the scene's own.
+
+A model knows some joints at one frame rate. What it is asked about has another skeleton and another rate; joints
+that the model does not know are carried rigidly by those that it knows, and bones keep their length.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from motioncast.core.resample import LOBES, resample, sample
+from motioncast.core.scene import Scene
+from motioncast.core.skeleton import Skeleton
+
+ANCHORS = 3
+"""Known joints that carry an unknown one."""
+
+TORSO = ("pelvis", "left_hip", "right_hip", "neck", "left_shoulder", "right_shoulder")
+TORSO_SHARE = 0.02
+"""How much the torso's turn counts where the carrying joints leave it open, as about a straight arm."""
+
+CONSTANT = 0.02
+"""A bone is rigid if its length varies by less than this share of it."""
+
+
+def needed_frames(history: int, model_fps: float, fps: float) -> int:
+    """Frames of a scene that can influence the answer: the model's history and the filter's reach before it."""
+    step = fps / model_fps
+    return int(np.ceil((history - 1) * step)) + int(np.ceil((LOBES + 1) * max(1.0, step))) + 1
+
+
+def lower(scene: Scene, skeleton: Skeleton, fps: float, history: int) -> Scene:
+    """The last ``history`` frames of a scene at a model's rate, on its skeleton.
+
+    Frames before the scene begins are not observed.
+    """
+    asked = resample(scene.on(skeleton), fps)[-history:]
+    missing = history - asked.frames
+    if not missing:
+        return asked
+    empty = np.zeros((missing, *asked.observed.shape[1:]), bool)
+    first = np.repeat(asked.positions[:1], missing, 0)
+    return Scene(
+        np.concatenate([first, asked.positions]), skeleton, fps, np.concatenate([empty, asked.observed]), asked.people
+    )
+
+
+def between_frames(history: np.ndarray, future: np.ndarray, model_fps: float, fps: float, frames: int) -> np.ndarray:
+    """A model's answer at the frames of the scene, without a step where history and answer meet.
+
+    Args:
+        history: ``(time, ...)`` at the model's rate, its last frame now.
+        future: ``(time, ...)`` at the model's rate.
+        model_fps: The model's rate.
+        fps: The scene's rate.
+        frames: Frames wanted.
+    """
+    step = model_fps / fps
+    times = len(history) - 1 + step * np.arange(1, frames + 1)
+    whole = np.concatenate([history, future])
+    return sample(whole, np.minimum(times, len(whole) - 1), step)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Lift:
+    """How a model's joints carry those of a skeleton.
+
+    Attributes:
+        skeleton: The skeleton of the question.
+        known: Joints of the question that a joint of the model stands for, in the same place.
+        served: For each of them that joint of the model.
+        carriers: For every joint the known joints that carry it, the nearest first.
+        weights: How much each of them counts.
+    """
+
+    skeleton: Skeleton
+    known: np.ndarray
+    served: np.ndarray
+    carriers: np.ndarray
+    weights: np.ndarray
+
+    @classmethod
+    def between(cls, model: Skeleton, skeleton: Skeleton) -> Lift:
+        """The lift from a model's skeleton to that of a question."""
+        served: dict[int, int] = {}
+        for joint, group in enumerate(model.map_from(skeleton)):
+            if len(group) == 1:
+                served.setdefault(group[0], joint)
+        known = np.array(sorted(served))
+        hops = _hops(skeleton)[:, known]
+        order = np.argsort(hops, axis=1, kind="stable")[:, :ANCHORS]
+        distance = np.maximum(np.take_along_axis(hops, order, 1), 1)
+        return cls(skeleton, known, np.array([served[joint] for joint in known]), known[order], 1.0 / distance**2)
+
+    @property
+    def carried(self) -> np.ndarray:
+        """Joints that are carried, ``(joints,)`` bool."""
+        carried = np.ones(len(self.skeleton), bool)
+        carried[self.known] = False
+        return carried
+
+    def __call__(self, answer: np.ndarray, last: np.ndarray) -> np.ndarray:
+        """All joints of the question.
+
+        Args:
+            answer: The model's joints, ``(time, people, model joints, 3)``.
+            last: The pose in the last frame of history, ``(people, joints, 3)``.
+
+        Returns:
+            ``(time, people, joints, 3)``.
+        """
+        lifted = np.empty((*answer.shape[:2], len(self.skeleton), 3))
+        lifted[:, :, self.known] = answer[:, :, self.served]
+        if not self.carried.any():
+            return lifted
+        torso = [joint for joint in self.known if self.skeleton.landmarks[joint] in TORSO]
+        turn = _kabsch(_spread(last, torso), _spread(lifted, torso), np.ones(len(torso)), np.zeros((3, 3)))
+        for joint in np.flatnonzero(self.carried):
+            carriers, anchor = self.carriers[joint], self.carriers[joint][0]
+            before = last[:, carriers] - last[:, [anchor]]
+            after = lifted[:, :, carriers] - lifted[:, :, [anchor]]
+            size = np.square(before).sum((-1, -2)).max()
+            own = _kabsch(before, after, self.weights[joint], turn * TORSO_SHARE * size)
+            lifted[:, :, joint] = lifted[:, :, anchor] + _apply(own, last[:, joint] - last[:, anchor])
+        return lifted
+
+
+def _hops(skeleton: Skeleton) -> np.ndarray:
+    """Number of bones between any two joints, ``(joints, joints)``; separate trees are far apart."""
+    count = len(skeleton)
+    hops = np.full((count, count), 1000)
+    np.fill_diagonal(hops, 0)
+    for joint, parent in skeleton.bones:
+        hops[joint, parent] = hops[parent, joint] = 1
+    for middle in range(count):
+        hops = np.minimum(hops, hops[:, middle, None] + hops[None, middle])
+    return hops
+
+
+def _spread(points: np.ndarray, joints: list[int]) -> np.ndarray:
+    chosen = points[..., joints, :]
+    return chosen - chosen.mean(-2, keepdims=True)
+
+
+def _apply(turn: np.ndarray, vectors: np.ndarray) -> np.ndarray:
+    return (turn @ vectors[..., None])[..., 0]
+
+
+def _kabsch(before: np.ndarray, after: np.ndarray, weights: np.ndarray, prior: np.ndarray) -> np.ndarray:
+    """The rotation that best turns points into others, ``(..., 3, 3)``; the prior decides what they leave open."""
+    correlation = np.swapaxes(after * weights[:, None], -1, -2) @ before + prior
+    left, _, right = np.linalg.svd(correlation)
+    left = left.copy()
+    left[..., -1] *= np.sign(np.linalg.det(left @ right))[..., None]
+    return left @ right
+
+
+def rigid_bones(history: Scene) -> np.ndarray:
+    """Median length of each bone that keeps its length in the history, else NaN, ``(people, joints)`` metres."""
+    lengths = np.full(history.observed.shape[1:], np.nan)
+    for joint, parent in history.skeleton.bones:
+        both = history.observed[:, :, joint] & history.observed[:, :, parent]
+        apart = np.linalg.norm(history.positions[:, :, joint] - history.positions[:, :, parent], axis=-1)
+        for person in np.flatnonzero(both.sum(0) >= 2):
+            seen = apart[both[:, person], person]
+            middle = np.median(seen)
+            if middle > 0 and seen.std() < CONSTANT * middle:
+                lengths[person, joint] = middle
+    return lengths
+
+
+def keep_lengths(positions: np.ndarray, skeleton: Skeleton, lengths: np.ndarray) -> np.ndarray:
+    """Positions whose rigid bones have their length, from the root outwards.
+
+    Args:
+        positions: ``(time, people, joints, 3)``.
+        skeleton: Their skeleton.
+        lengths: ``(people, joints)`` metres, NaN for bones that may stretch.
+    """
+    kept = positions.copy()
+    for joint, parent in skeleton.bones:
+        bone = positions[:, :, joint] - kept[:, :, parent]
+        length = np.linalg.norm(bone, axis=-1, keepdims=True)
+        wanted = np.where(np.isnan(lengths[:, joint]), length[..., 0], lengths[:, joint])[..., None]
+        kept[:, :, joint] = kept[:, :, parent] + bone * wanted / np.maximum(length, 1e-9)
+    return kept

@@ -27,6 +27,21 @@ def couple_scenes(data: Path, split: str, fps: float, skeleton: Skeleton) -> lis
     return [every(scene, fps, skeleton) for scene in cmu.couples(data, split)]
 
 
+def all_but_test(data: Path, fps: float, skeleton: Skeleton) -> tuple[list[Scene], list[Scene]]:
+    """Single people and couples of the training and validation takes."""
+    splits = ("train", "validation")
+    return (
+        [scene for split in splits for scene in single_scenes(data, split, fps, skeleton)],
+        [scene for split in splits for scene in couple_scenes(data, split, fps, skeleton)],
+    )
+
+
+def fold_of(scene: Scene, folds: int) -> int:
+    """The part of the data that a take belongs to: by subject, the couple by take."""
+    subject, take = (int(part) for part in scene.people[0].split("_"))
+    return (take if subject in cmu.COUPLE else subject) % folds
+
+
 def crowd(singles: list[Scene], couples: list[Scene], history: int, horizon: int) -> Windows:
     """Scenes of three people, seeded: in every second one two of them are the couple.
 

@@ -102,14 +102,15 @@ class Forecast:
         It holds the people who are forecast. Where the history has rotations the forecast gets them too.
         """
         past, future = self.history.select(self.people), self.scene(sample)
-        turned = past.rotations is not None and past.offsets is not None
-        if turned:
+        rotations = None
+        if past.rotations is not None:
             future = kinematics.fit_rotations(future, past)
+            assert future.rotations is not None
+            rotations = np.concatenate([past.rotations, future.rotations])
         return replace(
             past,
             positions=np.concatenate([past.positions, future.positions]),
             observed=np.concatenate([past.observed, future.observed]),
-            rotations=np.concatenate([past.rotations, future.rotations]) if turned else None,
-            offsets=past.offsets if turned else None,
+            rotations=rotations,
             source=f"{past.source}, continued by {self.card.name}",
         )

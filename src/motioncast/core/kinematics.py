@@ -1,17 +1,17 @@
 """From joint rotations to positions and back, in BVH's convention: a joint's rotation turns its children.
 
-``forward`` is the easy way. ``fit_rotations`` is the way back, which a model's answer needs before it can become
-a BVH or GLB file:
+``forward`` is the easy way. ``fit_rotations`` is the way back, which a model's answer needs before it can
+become a BVH or GLB file:
 
 - Bones keep their length: rest offsets are those of the history, or its median bones laid out in a T pose.
 - A joint with several children that move as one is turned to fit them best (Kabsch 1976); one with a single
-  child swings to aim at it. The *twist* about that bone cannot be seen in positions: it is carried over from the
-  history, or else is that of the shortest swing from the rest pose, kept free of flips.
-- Where children of one joint move on their own (chest: neck and both collars), each gets a *pivot*: a joint of
-  zero length at the parent, as the usual BVH of the CMU data has them. Pivots are named ``CHILD_pivot``.
+  child swings to aim at it. The *twist* about that bone cannot be seen in positions: it is carried over from
+  the history, or else is that of the shortest swing from the rest pose, kept free of flips.
+- Where children of one joint move on their own (chest: neck and both collars), each gets a *pivot*: a joint
+  of zero length at the parent, as the usual BVH of CMU's data has them. Pivots are named ``CHILD_pivot``.
 - What is then left (a bone that stretches, such as pelvis to neck in a skeleton without a spine) stays in the
   positions: such a joint *slides*, ``local_places`` gives its path in its parent's frame, and files give it
-  position channels. So a fitted scene never lies further than ``SLIDE_M`` from the positions it was made of.
+  position channels. So a fitted scene lies within ``SLIDE_M`` of the positions that it was made of.
 """
 
 from __future__ import annotations
@@ -57,7 +57,8 @@ def forward(
     Example:
         >>> quarter = rotation.from_axis_angle(np.array([0, 0, np.pi / 2]))
         >>> turns = np.stack([quarter, rotation.IDENTITY])[None, None]
-        >>> forward(turns, np.zeros((1, 1, 3)), np.array([[[0, 0, 0], [1.0, 0, 0]]]), [-1, 0])[0, 0, 1].round(6) + 0.0
+        >>> offsets = np.array([[[0.0, 0, 0], [1, 0, 0]]])
+        >>> forward(turns, np.zeros((1, 1, 3)), offsets, [-1, 0])[0, 0, 1].round(6) + 0.0
         array([0., 1., 0.])
     """
     world = world_rotations(rotations, parents)
@@ -93,7 +94,7 @@ def local_places(scene: Scene) -> np.ndarray:
         bone = positions[:, :, joint] - positions[:, :, parent]
         local = rotation.rotate(rotation.conjugate(world[:, :, parent]), bone)
         rest = np.broadcast_to(scene.offsets[:, joint], local.shape)
-        places[:, :, joint] = _filled(np.where(seen.any(0)[..., None], local, rest), seen)
+        places[:, :, joint] = _filled(np.where(np.any(seen, 0)[..., None], local, rest), seen)
     return places
 
 
@@ -109,13 +110,13 @@ def fit_rotations(scene: Scene, history: Scene | None = None) -> Scene:
 
     Args:
         scene: Positions to follow.
-        history: What went before, of (at least) the same people and ending one frame earlier; its rotations, if
-            it has any, go on without a step. Without it the scene's own positions tell lengths and pivots.
+        history: What went before, of (at least) the same people and ending one frame earlier; its rotations
+            go on without a step. Without it the scene's own positions tell lengths and pivots.
 
     Returns:
-        A scene with rotations and offsets whose positions are those of ``forward`` with ``local_places``, within
-        ``SLIDE_M`` of the given ones. Its skeleton is the history's where that has rotations, else the scene's
-        with pivots added; joints of the scene keep their names.
+        A scene with rotations and offsets whose positions are those of ``forward`` with ``local_places``,
+        within ``SLIDE_M`` of the given ones. Its skeleton is the history's where that has rotations, else
+        the scene's with pivots added; joints of the scene keep their names.
     """
     if history is None:
         skeleton, offsets = rest_body(scene)
@@ -167,7 +168,7 @@ def _fit(scene: Scene, offsets: np.ndarray, start: np.ndarray | None) -> Scene:
             bones = target[:, :, ends] - positions[:, :, joint, None]
             bones = rotation.rotate(rotation.conjugate(base)[:, :, None], bones) * weights[ends, None]
             rest = offsets[:, ends] * weights[ends, None]
-            turn = _turned(bones, rest, seen[:, :, ends].all(2), scene.fps, first)
+            turn = _turned(bones, rest, np.all(seen[:, :, ends], 2), scene.fps, first)
         else:
             turn = np.broadcast_to(rotation.IDENTITY if first is None else first, base.shape)
         local[:, :, joint] = _continuous(turn, first)
@@ -181,7 +182,12 @@ def _fit(scene: Scene, offsets: np.ndarray, start: np.ndarray | None) -> Scene:
 
 
 def _place(
-    target: np.ndarray, seen: np.ndarray, positions: np.ndarray, world: np.ndarray, offset: np.ndarray, parent: int
+    target: np.ndarray,
+    seen: np.ndarray,
+    positions: np.ndarray,
+    world: np.ndarray,
+    offset: np.ndarray,
+    parent: int,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Where a joint comes to lie, and the rotation in the world of what it hangs on."""
     if parent < 0:
@@ -191,23 +197,26 @@ def _place(
     if not (np.linalg.norm(rigid - target, axis=-1) > SLIDE_M)[seen].any():
         return rigid, base
     local = rotation.rotate(rotation.conjugate(base), target - positions[:, :, parent])
-    local = _filled(np.where(seen.any(0)[..., None], local, offset), seen)
+    local = _filled(np.where(np.any(seen, 0)[..., None], local, offset), seen)
     return positions[:, :, parent] + rotation.rotate(base, local), base
 
 
 def _turned(
     bones: np.ndarray, rest: np.ndarray, seen: np.ndarray, fps: float, start: np.ndarray | None
 ) -> np.ndarray:
-    """Local rotations ``(time, people, 4)`` that turn rest bones ``(people, ends, 3)`` into those of each frame."""
+    """Rotations ``(time, people, 4)`` that turn rest bones ``(people, ends, 3)`` into each frame's."""
+    known = seen if start is None else np.concatenate([np.ones_like(seen[:1]), seen[1:]])
     if rest.shape[1] > 1 and _spans_plane(rest).all() and _spans_plane(bones)[seen].all():
         turn = rotation.kabsch(np.broadcast_to(rest, bones.shape), bones)
         if start is not None:  # what the fit misses in the history's last frame it goes on missing: no step
-            turn = rotation.multiply(turn, rotation.multiply(rotation.conjugate(turn[0]), start))
-        return _filled(turn, seen)
+            missed = rotation.multiply(rotation.conjugate(turn[0]), start)
+            turn = rotation.multiply(turn, np.where(seen[0, :, None], missed, rotation.IDENTITY))
+            turn[0] = start
+        return _filled(turn, known)
     # all ends lie on one line: it can be aimed, the twist about it cannot be seen
     line = np.linalg.svd(rest)[2][:, 0]
     sign = np.where((rest * line[:, None]).sum(-1) < 0, -1.0, 1.0)[..., None]
-    return _aimed((bones * sign).sum(-2), (rest * sign).sum(-2), seen, fps, start)
+    return _filled(_aimed((bones * sign).sum(-2), (rest * sign).sum(-2), seen, fps, start), known)
 
 
 def _spans_plane(bones: np.ndarray) -> np.ndarray:
@@ -231,7 +240,7 @@ def _aimed(
     direction = np.where(np.linalg.norm(direction, axis=-1, keepdims=True) < 1e-6, axis, direction)
     if start is not None:
         direction[0] = rotation.rotate(start, axis)
-    shortest = rotation.between(np.broadcast_to(axis, direction.shape), direction)
+    shortest = rotation.between(axis, direction)
     if start is not None:
         shortest = rotation.multiply(shortest, rotation.multiply(rotation.conjugate(shortest[0]), start))
     carried = rotation.multiply(rotation.between(direction[:-1], direction[1:]), shortest[:-1])
@@ -247,7 +256,7 @@ def _aimed(
 
 
 def _filled(values: np.ndarray, seen: np.ndarray) -> np.ndarray:
-    """Values ``(time, people, ...)`` where unseen frames repeat the last seen one, or the first before that."""
+    """Values ``(time, people, n)``; unseen frames repeat the last seen one, or else the first."""
     if seen.all():
         return values
     frames = np.where(seen, np.arange(len(seen))[:, None], -1)

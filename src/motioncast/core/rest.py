@@ -19,15 +19,15 @@ def _both_sides(places: dict[str, tuple[float, float, float]]) -> dict[str, tupl
 
 
 T_POSE: dict[str, tuple[float, float, float]] = {
-    "pelvis": (0, 0, 0.95), "lower_spine": (0, 0, 1.06), "middle_spine": (0, 0, 1.17), "upper_spine": (0, 0, 1.28),
-    "neck_base": (0, 0, 1.40), "neck": (0, 0, 1.48), "upper_neck": (0, 0, 1.55), "head": (0, 0, 1.63),
-    "head_top": (0, 0, 1.78), "nose": (0, -0.10, 1.63),
+    "pelvis": (0, 0, 0.95), "lower_spine": (0, 0, 1.06), "middle_spine": (0, 0, 1.17),
+    "upper_spine": (0, 0, 1.28), "neck_base": (0, 0, 1.40), "neck": (0, 0, 1.48), "upper_neck": (0, 0, 1.55),
+    "head": (0, 0, 1.63), "head_top": (0, 0, 1.78), "nose": (0, -0.10, 1.63),
     **_both_sides({
         "hip": (0.10, 0, 0.90), "knee": (0.10, 0, 0.50), "ankle": (0.10, 0, 0.08), "heel": (0.10, 0.05, 0.02),
         "foot": (0.10, -0.10, 0.03), "toe": (0.10, -0.16, 0.02), "collar": (0.05, 0, 1.41),
-        "shoulder": (0.18, 0, 1.42), "elbow": (0.46, 0, 1.42), "wrist": (0.72, 0, 1.42), "hand": (0.80, 0, 1.42),
-        "fingers": (0.90, 0, 1.42), "thumb": (0.78, -0.06, 1.42), "eye": (0.03, -0.09, 1.66),
-        "ear": (0.08, 0, 1.64),
+        "shoulder": (0.18, 0, 1.42), "elbow": (0.46, 0, 1.42), "wrist": (0.72, 0, 1.42),
+        "hand": (0.80, 0, 1.42), "fingers": (0.90, 0, 1.42), "thumb": (0.78, -0.06, 1.42),
+        "eye": (0.03, -0.09, 1.66), "ear": (0.08, 0, 1.64),
     }),
 }  # fmt: skip
 """Where the landmarks are, in metres, on someone who stands on the floor, faces -y and holds the arms out."""
@@ -36,8 +36,8 @@ T_POSE: dict[str, tuple[float, float, float]] = {
 def rest_body(scene: Scene) -> tuple[Skeleton, np.ndarray]:
     """The skeleton with the pivots that the motion asks for, and rest offsets of each person.
 
-    Lengths are medians over the frames; directions are those of a T pose by landmark. Bones that turn together
-    keep the angles that they have in the motion.
+    Lengths are medians over the frames; directions are those of a T pose by landmark. Bones that turn
+    together keep the angles that they have in the motion.
 
     Returns:
         Skeleton of ``n`` joints and offsets ``(people, n, 3)``; a pivot's offset is zero.
@@ -96,10 +96,10 @@ def steadiness(scene: Scene) -> np.ndarray:
 
 def _grounded(scene: Scene) -> list[int]:
     """For each joint the first ancestor that is not always in one place with the joint's parent."""
-    positions, result = scene.positions, []
-    for parent in scene.skeleton.parents:
-        while parent > 0 and not (positions[:, :, parent] != positions[:, :, scene.skeleton.parents[parent]]).any():
-            parent = scene.skeleton.parents[parent]
+    positions, parents, result = scene.positions, scene.skeleton.parents, []
+    for parent in parents:
+        while parent > 0 and np.array_equal(positions[:, :, parent], positions[:, :, parents[parent]]):
+            parent = parents[parent]
         result.append(parent)
     return result
 
@@ -165,7 +165,8 @@ def _pivots(scene: Scene) -> dict[int, int]:
 
 def _lengths(scene: Scene, joint: int, ends: list[int]) -> np.ndarray:
     """Median lengths of the bones from a joint, ``(people, ends)``; zero for those never seen."""
-    length = np.linalg.norm(scene.positions[:, :, ends].astype(np.float64) - scene.positions[:, :, joint, None], axis=-1)
+    bones = scene.positions[:, :, ends].astype(np.float64) - scene.positions[:, :, joint, None]
+    length = np.linalg.norm(bones, axis=-1)
     seen = scene.observed[:, :, ends] & scene.observed[:, :, joint, None]
     result = np.zeros(length.shape[1:])
     for person, end in np.argwhere(seen.any(0)):

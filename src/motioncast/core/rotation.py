@@ -140,6 +140,7 @@ def between(start: np.ndarray, end: np.ndarray) -> np.ndarray:
 
     Opposite directions turn by pi about some axis across; a zero vector gives the identity.
     """
+    start, end = np.broadcast_arrays(start, end)
     a = start / np.maximum(np.linalg.norm(start, axis=-1, keepdims=True), 1e-12)
     b = end / np.maximum(np.linalg.norm(end, axis=-1, keepdims=True), 1e-12)
     cosine = (a * b).sum(-1, keepdims=True)

@@ -169,7 +169,18 @@ def couples(folder: str | Path, split: str | None = None) -> Iterator[Scene]:
         yield join([people[name] for name in names])
 
 
+def acclaim(take: Take) -> tuple[Acclaim, dict[str, np.ndarray]]:
+    """Skeleton and channel values of a take that an archive holds."""
+    ((_, skeleton, values),) = _motions(take.place, [take])
+    return skeleton, values
+
+
 def _read_archive(place: Path, group: list[Take]) -> Iterator[Scene]:
+    for take, skeleton, values in _motions(place, group):
+        yield scene_of(skeleton, values, take.fps, take.name, f"CMU {take.name}")
+
+
+def _motions(place: Path, group: list[Take]) -> Iterator[tuple[Take, Acclaim, dict[str, np.ndarray]]]:
     wanted = {f"{take.name}.colamc": take for take in group}
     skeleton: Acclaim | None = None
     packed: dict[str, str] = {}
@@ -192,8 +203,7 @@ def _read_archive(place: Path, group: list[Take]) -> Iterator[Scene]:
     for name, take in wanted.items():
         if name not in packed:
             raise FormatError(place, f"the archive lacks {name}, which its index names")
-        values = _unpack(packed.pop(name), f"{place}/{name}")
-        yield scene_of(skeleton, values, take.fps, take.name, f"CMU {take.name}")
+        yield take, skeleton, _unpack(packed.pop(name), f"{place}/{name}")
 
 
 def _unpack(text: str, path: str) -> dict[str, np.ndarray]:

@@ -3,10 +3,10 @@
 Layout, so that Blender, three.js and game engines read each person as one armature with one action:
 
 - The root node ``z up`` turns the world into glTF's y up; in it a node a person, in that the joints' nodes.
-- Each joint has a rotation channel, the first joint a translation channel too, and so has each joint that slides
-  (``core.kinematics``). The nodes themselves stand in the rest pose, feet on the floor.
-- A person's mesh is one octahedron a bone in the rest pose, skinned to the joint that turns the bone. Its node
-  stands at the root of the scene, since its own place has no meaning.
+- Each joint that turns has a rotation channel; the first joint and those that slide (``core.kinematics``)
+  have a translation channel. The nodes themselves stand in the rest pose, feet on the floor.
+- A person's mesh is one octahedron a bone in the rest pose, skinned to the joint that turns the bone. Its
+  node stands at the root of the scene, since its own place has no meaning.
 - Someone who is not there has the scale 0 in those frames; glTF's core has no other way to hide a node.
 
 Specification: Khronos Group, glTF 2.0, version 2.0.1 (2021).
@@ -163,16 +163,18 @@ def _person(
             animate(first + joint, "translation", places[:, joint])
         if joint == 0 or not np.allclose(turns[:, joint], rotation.IDENTITY, atol=1e-6):
             animate(first + joint, "rotation", np.roll(turns[:, joint], -1, -1))  # wxyz to xyzw
-    there = scene.observed[:, person].any(-1)
+    there = np.any(scene.observed[:, person], -1)
     if not there.all():
         animate(armature, "scale", np.repeat(there[:, None], 3, 1), "STEP")
 
     inverse_binds = np.tile(np.eye(4, dtype=np.float32), (len(skeleton), 1, 1))
     inverse_binds[:, 3, :3] = -rest  # glTF stores matrices column by column
     joints = list(range(first, first + len(skeleton)))
-    skin = {"name": name, "joints": joints, "skeleton": first, "inverseBindMatrices": file.accessor(inverse_binds)}
+    binds = file.accessor(inverse_binds)
+    rig = {"name": name, "joints": joints, "skeleton": first, "inverseBindMatrices": binds}
+    skin = file.add("skins", rig)
     mesh = _mesh(file, rest, skeleton.parents, f"{name} bones", COLOURS[person % len(COLOURS)])
-    return armature, file.add("nodes", {"name": f"{name} bones", "mesh": mesh, "skin": file.add("skins", skin)})
+    return armature, file.add("nodes", {"name": f"{name} bones", "mesh": mesh, "skin": skin})
 
 
 def _rest_positions(offsets: np.ndarray, parents: tuple[int, ...]) -> np.ndarray:
@@ -183,7 +185,7 @@ def _rest_positions(offsets: np.ndarray, parents: tuple[int, ...]) -> np.ndarray
 def _mesh(
     file: _File, rest: np.ndarray, parents: tuple[int, ...], name: str, colour: tuple[float, float, float]
 ) -> int:
-    """Octahedra: a slim one along each bone, which its start turns, and a small one at each end of the tree."""
+    """Octahedra: a slim one along each bone, which its start turns, a small one at each end of the tree."""
     shapes, owners = [], []
     for joint, parent in enumerate(parents):
         start = rest[max(parent, 0)]
@@ -222,7 +224,7 @@ def _mesh(
 
 
 _FACES = np.array([[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1], [5, 2, 1], [5, 3, 2], [5, 4, 3], [5, 1, 4]])
-"""Corners of an octahedron's faces, seen from outside anticlockwise; no normals: faces are flat by default."""
+"""Corners of an octahedron's faces, anticlockwise from outside; without normals faces are flat by default."""
 
 
 def _octahedron(start: np.ndarray, end: np.ndarray) -> np.ndarray:

@@ -22,6 +22,8 @@ from lightning_fabric import Fabric
 from torch import Tensor, nn
 
 from motioncast.benchmarks import open_cmu
+from motioncast.core.scene import Scene
+from motioncast.core.skeleton import Skeleton
 from motioncast.core.skeletons import SKELETONS
 from motioncast.datasets.windows import Windows, cut
 from motioncast.metrics.position import mpjpe_at
@@ -53,12 +55,8 @@ def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = pr
     config = raw.config
     skeleton = SKELETONS[config.skeleton]
 
-    def takes(split: str) -> tuple[list, list]:
-        fps = STORED_FPS if split == "train" else config.fps
-        return open_cmu.single_scenes(data, split, fps, skeleton), open_cmu.couple_scenes(data, split, fps, skeleton)
-
-    sampler = Sampler(*takes("train"), recipe, config.history, config.horizon, config.fps)
-    checks = validation(*takes("validation"), config.history, config.horizon)
+    sampler = Sampler(*training_takes(recipe, data, skeleton), recipe, config.history, config.horizon, config.fps)
+    checks = validation(data, skeleton, config.history, config.horizon, config.fps)
     if hasattr(raw, "fit_statistics"):
         first = next(sampler.batches(np.random.default_rng(recipe.seed)))
         raw.fit_statistics(torch.from_numpy(first.positions[:, : config.history]))
@@ -102,7 +100,7 @@ def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = pr
             if fabric.is_global_zero:
                 with (out / "metrics.jsonl").open("a", encoding="utf-8") as log:
                     log.write(json.dumps(entry) + "\n")
-                if score < best:
+                if score < best or recipe.folds:  # what a fold left out must not choose
                     best = score
                     _save({name: value.half() for name, value in mean.state_dict().items()}, out / "best.pt")
                 _save(
@@ -142,8 +140,25 @@ def follow(mean: nn.Module, model: nn.Module, decay: float) -> None:
         average.lerp_(value, 1 - decay)
 
 
-def validation(singles: list, couples: list, history: int, horizon: int) -> dict[str, Windows]:
+def training_takes(recipe: Recipe, data: Path, skeleton: Skeleton) -> tuple[list[Scene], list[Scene]]:
+    """Takes of single people and of the couple that a recipe trains on."""
+    if not recipe.folds:
+        return (
+            open_cmu.single_scenes(data, "train", STORED_FPS, skeleton),
+            open_cmu.couple_scenes(data, "train", STORED_FPS, skeleton),
+        )
+    singles, couples = open_cmu.all_but_test(data, STORED_FPS, skeleton)
+    kept = [open_cmu.fold_of(scene, recipe.folds) != recipe.fold for scene in (*singles, *couples)]
+    return (
+        [scene for scene, keep in zip(singles, kept, strict=False) if keep],
+        [scene for scene, keep in zip(couples, kept[len(singles) :], strict=True) if keep],
+    )
+
+
+def validation(data: Path, skeleton: Skeleton, history: int, horizon: int, fps: float) -> dict[str, Windows]:
     """The windows on which a model is chosen: the couple, and composed scenes of three."""
+    singles = open_cmu.single_scenes(data, "validation", fps, skeleton)
+    couples = open_cmu.couple_scenes(data, "validation", fps, skeleton)
     return {
         "couple": cut(couples, history, horizon),
         "crowd": open_cmu.crowd(singles, couples, history, horizon),

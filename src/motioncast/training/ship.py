@@ -3,9 +3,19 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
+import numpy as np
+
+from motioncast.benchmarks import open_cmu
+from motioncast.benchmarks.calibration import errors_by_take, radii
+from motioncast.benchmarks.protocols import Protocol
 from motioncast.core.card import ModelCard
+from motioncast.core.forecaster import Forecaster
+from motioncast.datasets.windows import cut
+from motioncast.inference.registry import load
 from motioncast.models import build
 from motioncast.training.export import export, load_weights
 from motioncast.training.recipe import Recipe
@@ -17,14 +27,15 @@ DATA = (
 LICENCE = "Apache-2.0; trained on CMU's data, which is free for research and products but not to be resold"
 
 
-def ship(run: Path, folder: Path | None = None) -> ModelCard:
+def ship(run: Path, folder: Path | None = None, radius: Mapping[str, Any] | None = None) -> ModelCard:
     """Write the graph and the card of a run's best weights.
 
     Args:
         run: Folder of the run.
         folder: Where the files go. Default: the run's folder.
+        radius: Error radii for the card (:func:`calibrated`).
     """
-    recipe = Recipe(**json.loads((run / "recipe.json").read_text(encoding="utf-8")))
+    recipe = _recipe(run)
     model = build(recipe.model, recipe.sizes)
     load_weights(model, run / "best.pt")
     config = model.config
@@ -44,7 +55,48 @@ def ship(run: Path, folder: Path | None = None) -> ModelCard:
             "validation_ratio_to_zero_velocity": {name: round(value, 4) for name, value in best["validation"].items()},
             "chosen_at_step": best["step"],
         },
+        radius=radius or {},
         recipe=recipe.name,
         **recipe.card,
     )
     return export(model, card, folder or run)
+
+
+def calibrated(folds: Sequence[Path], data: Path, model: Forecaster | None = None) -> dict[str, Any]:
+    """Error radii from runs that each left some takes out, or from the validation takes of a model.
+
+    Args:
+        folds: Folders of runs whose recipes name their fold.
+        data: Folder with CMU's takes.
+        model: Without folds: the model whose validation takes are used.
+    """
+    errors: list[np.ndarray] = []
+    pairs = [(_fold_forecaster(run), _recipe(run)) for run in folds] or [(model, None)]
+    for forecaster, recipe in pairs:
+        if forecaster is None:
+            raise ValueError("radii need the runs of folds, or a model")
+        card = forecaster.card
+        if recipe is None:
+            singles = open_cmu.single_scenes(data, "validation", card.fps, card.joints)
+            couples = open_cmu.couple_scenes(data, "validation", card.fps, card.joints)
+        else:
+            singles, couples = (
+                [scene for scene in scenes if open_cmu.fold_of(scene, recipe.folds) == recipe.fold]
+                for scenes in open_cmu.all_but_test(data, card.fps, card.joints)
+            )
+        protocol = Protocol("radii", card.skeleton, card.fps, card.history, card.horizon, (), (), "mpjpe", "", 10)
+        for scenes in (singles, couples):
+            windows = cut(scenes, card.history, card.horizon, protocol.stride)
+            errors += errors_by_take(forecaster, protocol, windows).values()
+    method = f"cross-conformal over {len(folds)} folds of actors and takes" if folds else "conformal, validation takes"
+    return {"levels": radii(errors), "n_takes": len(errors), "method": method}
+
+
+def _recipe(run: Path) -> Recipe:
+    values = json.loads((run / "recipe.json").read_text(encoding="utf-8"))
+    return Recipe(**{key: tuple(value) if isinstance(value, list) else value for key, value in values.items()})
+
+
+def _fold_forecaster(run: Path) -> Forecaster:
+    ship(run)
+    return load(run / f"{_recipe(run).name}.onnx")

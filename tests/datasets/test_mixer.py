@@ -1,0 +1,49 @@
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from motioncast.datasets.mixer import PERSONAL_SPACE_M, arrange, turned
+
+
+def walk(frames: int, people: int, seed: int) -> np.ndarray:
+    random = np.random.default_rng(seed)
+    steps = random.normal(0, 0.03, (frames, people, 1, 3)).cumsum(0)
+    return (steps + random.normal(0, 0.3, (people, 15, 3)) + [5, -3, 1]).astype(np.float32)
+
+
+@given(st.integers(0, 1000))
+def test_strangers_keep_their_distance_and_couples_stay_together(seed: int) -> None:
+    couple, single = walk(40, 2, seed), walk(40, 1, seed + 1)
+    scene = arrange([single, couple], 14, np.random.default_rng(seed))
+    if scene is None:
+        return
+    between = np.linalg.norm(couple[:, 0] - couple[:, 1], axis=-1)
+    np.testing.assert_allclose(np.linalg.norm(scene[:, 1] - scene[:, 2], axis=-1), between, atol=1e-5)
+    for other in (1, 2):
+        apart = np.linalg.norm(scene[:, 0, 0, :2] - scene[:, other, 0, :2], axis=-1)
+        assert apart.min() >= PERSONAL_SPACE_M - 1e-5
+    np.testing.assert_allclose(scene[..., 2], np.concatenate([single, couple], 1)[..., 2], atol=1e-5)
+
+
+def test_the_place_depends_on_nothing_after_now() -> None:
+    one, two = walk(40, 1, 1), walk(40, 1, 2)
+    changed = one.copy()
+    changed[15:, ..., 2] += 1.0  # jumps up later on; nobody comes closer on the floor
+    first = arrange([one, two], 14, np.random.default_rng(7))
+    second = arrange([changed, two], 14, np.random.default_rng(7))
+    assert first is not None
+    assert second is not None
+    np.testing.assert_array_equal(first[:15], second[:15])
+
+
+def test_no_arrangement_in_too_small_a_place() -> None:
+    one = np.zeros((20, 1, 15, 3), np.float32)
+    assert arrange([one, one], 9, np.random.default_rng(0), radius_m=0.1) is None
+
+
+def test_turning_keeps_the_vertical() -> None:
+    points = np.random.default_rng(0).normal(size=(10, 3)).astype(np.float32)
+    turned_points = turned(points, 1.0)
+    np.testing.assert_array_equal(turned_points[:, 2], points[:, 2])
+    np.testing.assert_allclose(np.linalg.norm(turned_points, axis=1), np.linalg.norm(points, axis=1), rtol=1e-5)

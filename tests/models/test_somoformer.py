@@ -1,0 +1,147 @@
+from __future__ import annotations
+
+import pytest
+
+torch = pytest.importorskip("torch")
+
+from motioncast.models.somoformer import SoMoFormer, SoMoFormerConfig  # noqa: E402
+from motioncast.nn.dct import dct_matrix  # noqa: E402
+from motioncast.nn.gaps import fill_gaps  # noqa: E402
+
+pytestmark = pytest.mark.torch
+
+SMALL = {"width": 32, "layers": 2, "heads": 4, "feed_forward": 64, "grid_width": 4}
+
+
+def scene(people: int = 3, batch: int = 2, history: int = 15) -> tuple[torch.Tensor, torch.Tensor]:
+    generator = torch.Generator().manual_seed(0)
+    positions = torch.randn(batch, history, people, 15, 3, generator=generator)
+    return positions, torch.ones(batch, history, people, 15, dtype=torch.bool)
+
+
+@pytest.fixture(scope="module")
+def model() -> SoMoFormer:
+    torch.manual_seed(0)
+    return SoMoFormer(SoMoFormerConfig(**SMALL)).eval()
+
+
+@pytest.mark.parametrize(
+    ("sizes", "count"),
+    [
+        ({"skeleton": "somof13", "history": 16, "horizon": 14}, 4_882_842),
+        ({"skeleton": "mrt15", "history": 15, "horizon": 45}, 4_898_736),
+    ],
+)
+def test_the_release_has_its_number_of_parameters(sizes: dict, count: int) -> None:
+    model = SoMoFormer(SoMoFormerConfig(preset="release", cells=3, people=1000, **sizes))
+    assert sum(parameter.numel() for parameter in model.parameters()) == count
+
+
+def test_the_papers_preset_has_the_number_that_follows_from_its_sizes() -> None:
+    model = SoMoFormer(SoMoFormerConfig())
+    layers, frames, content, joints, people, grid = 6 * 789_760, 60, 248, 15, 16, 8
+    count = layers + (frames + 1) * content + (3 * joints + people) * content + 25 * grid + 257 * frames
+    assert sum(parameter.numel() for parameter in model.parameters()) == count
+
+
+def test_dct_is_over_time_and_invertible() -> None:
+    matrix = dct_matrix(60)
+    torch.testing.assert_close(matrix @ matrix.T, torch.eye(60), atol=1e-6, rtol=0)
+    constant = matrix @ torch.ones(60)
+    torch.testing.assert_close(constant[0], torch.tensor(60.0).sqrt())
+    assert constant[1:].abs().max() < 1e-5
+
+
+def test_a_zero_head_repeats_the_last_pose() -> None:
+    model = SoMoFormer(SoMoFormerConfig(**SMALL)).eval()
+    torch.nn.init.zeros_(model.head.weight)
+    torch.nn.init.zeros_(model.head.bias)
+    history, observed = scene()
+    for answer in model(history, observed):
+        torch.testing.assert_close(answer, history[:, -1:].expand_as(answer), atol=1e-5, rtol=0)
+
+
+def test_absent_people_change_nothing(model: SoMoFormer) -> None:
+    history, observed = scene()
+    observed[:, :, 2] = False
+    other = history.clone()
+    other[:, :, 2] += 10
+    torch.testing.assert_close(model(history, observed)[-1][:, :, :2], model(other, observed)[-1][:, :, :2])
+
+
+def test_in_the_release_absent_people_do_change_the_answer() -> None:
+    torch.manual_seed(0)
+    model = SoMoFormer(SoMoFormerConfig(preset="release", cells=3, **SMALL)).eval()
+    history, observed = scene()
+    observed[:, :, 2] = False
+    other, seen = history.clone(), observed.clone()
+    alone = model(history[:, :, :2], observed[:, :, :2])[-1]
+    assert (model(other, seen)[-1][:, :, :2] - alone).abs().max() > 1e-3
+
+
+def test_moving_the_scene_moves_the_answer(model: SoMoFormer) -> None:
+    history, observed = scene()
+    shift = torch.tensor([3.0, -2.0, 0.5])
+    torch.testing.assert_close(model(history + shift, observed)[-1], model(history, observed)[-1] + shift, atol=1e-5, rtol=0)
+
+
+def test_re_ordering_people_with_their_rows_re_orders_the_answer(model: SoMoFormer) -> None:
+    history, observed = scene()
+    order = [2, 0, 1]
+    shuffled = SoMoFormer(SoMoFormerConfig(**SMALL)).eval()
+    shuffled.load_state_dict(model.state_dict())
+    shuffled.person.weight.data[:3] = model.person.weight.data[order]
+    torch.testing.assert_close(
+        shuffled(history[:, :, order], observed)[-1], model(history, observed)[-1][:, :, order], atol=1e-5, rtol=0
+    )
+
+
+def test_every_cell_of_the_grid_is_reached(model: SoMoFormer) -> None:
+    x, y = torch.meshgrid(torch.linspace(-4.9, 4.9, 20), torch.linspace(-4.9, 4.9, 20), indexing="ij")
+    neck = torch.stack([x.flatten(), y.flatten(), torch.ones(400)], -1)[None]
+    cells = model.cell(neck, torch.ones(1, 400, dtype=torch.bool))
+    assert len(torch.unique(cells[0], dim=0)) == 25
+
+
+def test_the_releases_grid_is_constant_within_its_extent() -> None:
+    model = SoMoFormer(SoMoFormerConfig(preset="release", cells=3, **SMALL))
+    neck = torch.rand(1, 400, 3) * 5.9 - 2.95
+    assert len(torch.unique(model.cell(neck, torch.ones(1, 400, dtype=torch.bool))[0], dim=0)) == 1
+
+
+def test_attention_can_be_asked_for_and_sums_to_one(model: SoMoFormer) -> None:
+    history, observed = scene()
+    weights: list[torch.Tensor] = []
+    asked = model(history, observed, weights)[-1]
+    assert [tuple(layer.shape) for layer in weights] == [(2, 4, 135, 135)] * 2
+    torch.testing.assert_close(weights[0].sum(-1), torch.ones(2, 4, 135))
+    torch.testing.assert_close(asked, model(history, observed)[-1], atol=1e-5, rtol=0)
+
+
+def test_loss_weighs_layers_as_the_equation_does(model: SoMoFormer) -> None:
+    truth, observed = torch.zeros(1, 45, 1, 15, 3), torch.ones(1, 45, 1, 15, dtype=torch.bool)
+    answers = [truth + torch.tensor([size, 0.0, 0.0]) for size in (1.0, 2.0)]
+    assert model.loss(answers, truth, observed).item() == pytest.approx(2.0 + 0.2 * 1.0, rel=1e-4)
+    squared = SoMoFormer(SoMoFormerConfig(squared=True, **SMALL))
+    assert squared.loss(answers, truth, observed).item() == pytest.approx(4.0 + 0.2 * 1.0)
+    released = SoMoFormer(SoMoFormerConfig(preset="release", cells=3, **SMALL))
+    assert released.loss(answers, truth, observed).item() == pytest.approx((1.2 * 2.0 + 0.2) / 1.4, rel=1e-4)
+
+
+def test_statistics_standardise_the_padded_trajectory(model: SoMoFormer) -> None:
+    fitted = SoMoFormer(SoMoFormerConfig(**SMALL))
+    history, _ = scene(batch=20)
+    fitted.fit_statistics(history)
+    neck = history[:, -1:, :, fitted.neck : fitted.neck + 1]
+    values = fitted.standardised(history - neck).flatten(0, 3)
+    assert values.mean(0).abs().max() < 1e-3
+    assert values.std(0).max() < 1.001
+
+
+def test_gaps_are_filled_by_the_last_and_the_first_seen_place() -> None:
+    history = torch.arange(5.0).view(1, 5, 1, 1, 1).expand(1, 5, 1, 2, 3).clone()
+    observed = torch.tensor([False, True, False, True, False]).view(1, 5, 1, 1).expand(1, 5, 1, 2).clone()
+    assert fill_gaps(history, observed)[0, :, 0, 0, 0].tolist() == [1, 1, 1, 3, 3]
+    observed[:, -1, 0, 1] = True  # the other joint is seen at last: it stands for one that never was
+    observed[:, :, 0, 0] = False
+    assert fill_gaps(history, observed)[0, :, 0, 0, 0].tolist() == [4, 4, 4, 4, 4]

@@ -1,0 +1,148 @@
+"""From made-up takes in CMU's layout to a shipped graph: train, be killed, go on, export, agree."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch")
+
+from motioncast.core.skeletons import CMU_ENDS  # noqa: E402
+from motioncast.datasets.cmu import OFFSET_STEP_M, SLOW_SUBJECTS  # noqa: E402
+from motioncast.errors import InputError  # noqa: E402
+from motioncast.training.batches import Sampler  # noqa: E402
+from motioncast.training.recipe import Recipe, read_recipe  # noqa: E402
+
+pytestmark = pytest.mark.torch
+
+RECIPE = Recipe(
+    name="toy",
+    model="somoformer_fast",
+    sizes={"width": 16, "layers": 1, "heads": 2, "feed_forward": 16},
+    steps=4,
+    batch=4,
+    warmup=1,
+    validate_every=2,
+    card={"source": "a toy"},
+)
+
+
+@pytest.fixture(scope="module")
+def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Six takes of people who wander about, as positions of CMU's joints."""
+    folder = tmp_path_factory.mktemp("data") / "extra"
+    folder.mkdir()
+    random = np.random.default_rng(0)
+    names = list(CMU_ENDS)
+    body = random.normal(0, 0.3, (len(names), 3))
+    arrays: dict[str, np.ndarray] = {"joint_names": np.array(names), "parents": np.arange(-1, len(names) - 1)}
+    rows = ["id,archive"]
+    for take in ("01_01", "03_01", "60_01", "61_01", "60_12", "61_12"):
+        seconds = np.arange(5 * (60 if int(take[:2]) in SLOW_SUBJECTS else 120)) / 60
+        root = np.stack([np.sin(seconds), 0.2 * seconds, 1 + 0 * seconds], 1) + random.normal(0, 1, 3) * [1, 1, 0]
+        arrays[f"{take}_root"] = root.astype(np.float32)
+        offsets = np.broadcast_to(body[1:] / OFFSET_STEP_M, (len(root), len(names) - 1, 3))
+        arrays[f"{take}_rel"] = offsets.astype(np.int16)
+        rows.append(f"{take},extra_cmu_toy.npz")
+    np.savez(folder / "extra_cmu_toy.npz", **arrays)  # pyright: ignore[reportArgumentType]
+    (folder / "index.csv").write_text("\n".join(rows), encoding="utf-8")
+    return folder.parent
+
+
+@pytest.fixture(scope="module")
+def run(data: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A run that was stopped after two steps and went on to four."""
+    from motioncast.training.loop import train
+
+    out = tmp_path_factory.mktemp("run")
+    said: list[str] = []
+    train(replace(RECIPE, steps=2), data, out, said.append)
+    train(RECIPE, data, out, said.append)
+    assert any("going on from step 2" in line for line in said)
+    return out
+
+
+def test_the_log_goes_on_where_it_stopped(run: Path) -> None:
+    entries = [json.loads(line) for line in (run / "metrics.jsonl").read_text(encoding="utf-8").splitlines()]
+    assert [entry["step"] for entry in entries] == [2, 4]
+    assert set(entries[0]["validation"]) == {"couple", "crowd"}
+
+
+def test_graph_and_torch_agree_for_any_number_of_people(run: Path, tmp_path: Path) -> None:
+    from motioncast.inference.registry import load
+    from motioncast.models import build
+    from motioncast.training.export import load_weights
+    from motioncast.training.ship import ship
+
+    card = ship(run, tmp_path)
+    assert card.parameters > 0
+    forecaster = load(tmp_path / "toy.onnx")
+    model = load_weights(build(RECIPE.model, RECIPE.sizes), run / "best.pt")
+    random = np.random.default_rng(0)
+    for people in (1, 2, 5):
+        history = random.normal(size=(2, 15, people, 15, 3)).astype(np.float32)
+        observed = random.random((2, 15, people, 15)) < 0.9
+        with torch.no_grad():
+            expected = model(torch.from_numpy(history), torch.from_numpy(observed)).numpy()
+        np.testing.assert_allclose(forecaster.run(history, observed), expected, atol=1e-4)  # pyright: ignore
+
+
+def test_a_damaged_graph_is_refused(run: Path, tmp_path: Path) -> None:
+    from motioncast.inference.registry import load
+    from motioncast.training.ship import ship
+
+    ship(run, tmp_path)
+    weights = tmp_path / "toy.onnx"
+    weights.write_bytes(weights.read_bytes()[:-1])
+    forecaster = load(weights)
+    with pytest.raises(InputError, match="checksum"):
+        forecaster.run(np.zeros((1, 15, 1, 15, 3), np.float32), np.ones((1, 15, 1, 15), bool))  # pyright: ignore
+
+
+def sampler(data: Path, recipe: Recipe) -> Sampler:
+    from motioncast.benchmarks.open_cmu import couple_scenes, single_scenes
+    from motioncast.core.skeletons import MRT15
+
+    return Sampler(
+        single_scenes(data, "train", 60, MRT15), couple_scenes(data, "train", 60, MRT15), recipe, 15, 45, 15
+    )
+
+
+def test_batches_are_seeded_and_finite(data: Path) -> None:
+    draws = [next(sampler(data, RECIPE).batches(np.random.default_rng(3))) for _ in range(2)]
+    np.testing.assert_array_equal(draws[0].positions, draws[1].positions)
+    assert np.isfinite(draws[0].positions).all()
+    assert draws[0].positions.shape[1:] == (60, draws[0].positions.shape[2], 15, 3)
+
+
+def test_mirroring_swaps_sides_and_reversal_keeps_bones(data: Path) -> None:
+    plain = replace(RECIPE, reverse=0.0, mirror=0.0, speed=(1.0, 1.0), scale=(1.0, 1.0))
+    lengths = []
+    for recipe in (plain, replace(plain, reverse=1.0), replace(plain, mirror=1.0)):
+        window, _ = sampler(data, recipe).window(1, np.random.default_rng(0))
+        lengths.append(np.linalg.norm(window[:, 0, 2] - window[:, 0, 1], axis=-1))  # left hip to left knee
+        right = np.linalg.norm(window[:, 0, 5] - window[:, 0, 4], axis=-1)
+        lengths.append(right)
+    np.testing.assert_allclose(lengths[0], lengths[2][::-1], atol=1e-4)
+    np.testing.assert_allclose(lengths[0], lengths[5], atol=1e-4)  # mirrored: the left thigh was the right one
+
+
+def test_the_future_is_not_worsened_and_not_seen(data: Path) -> None:
+    batch = next(sampler(data, replace(RECIPE, hide=0.0, drop=0.5)).batches(np.random.default_rng(0)))
+    assert batch.observed[:, 15:].all()
+    assert not batch.observed[:, :15].all()
+    assert batch.seen.shape[1] == 15
+
+
+def test_recipes_are_checked(tmp_path: Path) -> None:
+    assert read_recipe("somoformer-fast").model == "somoformer_fast"
+    with pytest.raises(InputError, match="no recipe"):
+        read_recipe("nothing")
+    odd = tmp_path / "odd.toml"
+    odd.write_text('name = "a"\nmodel = "b"\nsteeps = 3\n', encoding="utf-8")
+    with pytest.raises(InputError, match="steeps"):
+        read_recipe(odd)

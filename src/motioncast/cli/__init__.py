@@ -9,9 +9,9 @@ def main() -> None:
     """Entry point of the command ``motioncast``."""
     arguments = sys.argv[1:]
     if arguments == ["--version"]:  # answered before the parser is loaded, which takes a tenth of a second
-        from importlib.metadata import version
+        from motioncast import __version__
 
-        print(version("motioncast"))
+        print(__version__)
         return
     from motioncast.cli.app import run
 

@@ -45,9 +45,15 @@ def build() -> App:
         app.command(f"motioncast.cli.{name}:{name}", name=name, help=line)
     datasets = App(name="datasets", help="List the data sets and where to obtain them; check a copy.")
     datasets.command("motioncast.cli.datasets:check", name="check", help="Check a copy of a data set.")
-    datasets.default("motioncast.cli.datasets:datasets")
+    datasets.default(_list_datasets)  # a default command cannot be named by a string
     app.command(datasets)
     return app
+
+
+def _list_datasets() -> None:
+    from motioncast.cli.datasets import datasets
+
+    datasets()
 
 
 def run(arguments: Sequence[str]) -> int:

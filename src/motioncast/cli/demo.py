@@ -7,10 +7,10 @@ from pathlib import Path
 
 from motioncast.cli.comparing import error_table
 from motioncast.cli.say import note
-from motioncast.cli.writing import open_page
+from motioncast.cli.writing import make_folder, open_page
 
 HORIZON_S = 3.0
-GUESSES = ("zero-velocity", "constant-velocity", "neck-velocity")
+GUESSES = ("zero-velocity", "constant-velocity", "neck-velocity", "root-velocity-damped")
 
 
 def demo(*, model: str = "somoformer-fast", out: Path = Path("motioncast-demo"), view: bool = False) -> None:
@@ -39,7 +39,7 @@ def demo(*, model: str = "somoformer-fast", out: Path = Path("motioncast-demo"),
     print("which was never trained on this take. Against what really happened, over two people and all joints:\n")
     error_table(curves, answer.fps)
 
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     page = out / "forecast.html"
     save_forecast(answer, out / "forecast.npz", truth)
     write_page(answer, page, truth=truth, title="Salsa: what will they do next?", curves=curves)

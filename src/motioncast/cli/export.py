@@ -5,16 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Literal
 
-from motioncast.cli.reading import AS_THE_FILE_SAYS, Reading, read_scene
+from motioncast.cli.reading import AS_THE_FILE_SAYS, Reading, holds_forecast, read_scene
 from motioncast.cli.writing import write_forecast
 from motioncast.errors import InputError
-
-Target = Literal["npz", "csv", "trc", "bvh", "glb", "html"]
 
 
 def export(
     *files: Path,
-    to: Target,
+    to: Literal["npz", "csv", "trc", "bvh", "glb", "html"],
     out: Path | None = None,
     sample: int | None = None,
     reading: Reading = AS_THE_FILE_SAYS,
@@ -27,11 +25,9 @@ def export(
         files: A forecast (npz), or the files of a scene.
         to: Format to write.
         out: File to write. Default: the first file's name with the new suffix, in the current folder.
-        sample: Sample of the forecast. Default: the most probable.
+        sample: Number of the forecast's sample, from 1. Default: the most probable one.
     """
-    if not files:
-        raise InputError("no file came; give a forecast or motion files")
-    out = out or Path(f"{files[0].stem}.{to}")
+    out = out or Path(f"{files[0].stem if files else 'scene'}.{to}")
     if out.suffix.lower() != f".{to}":
         raise InputError(f"--out {out} does not end in .{to}; let --to and the suffix of --out agree")
     for file in _write(files, out, sample, reading):
@@ -42,7 +38,10 @@ def _write(files: tuple[Path, ...], out: Path, sample: int | None, reading: Read
     from motioncast.formats.load import load_forecast, load_truth, save_scene
 
     if len(files) == 1 and holds_forecast(files[0]):
-        return write_forecast(load_forecast(files[0]), out, load_truth(files[0]), sample)
-    if out.suffix == ".html":
+        forecast = load_forecast(files[0])
+        if sample is not None and not 1 <= sample <= len(forecast.samples):
+            raise InputError(f"--sample {sample} came; {files[0]} holds {len(forecast.samples)}, counted from 1")
+        return write_forecast(forecast, out, load_truth(files[0]), None if sample is None else sample - 1)
+    if out.suffix.lower() == ".html":
         raise InputError("a page shows a forecast; make one first with: motioncast forecast")
     return list(save_scene(read_scene(files, reading), out))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from motioncast.cli import say
-from motioncast.cli.comparing import error_table
+from motioncast.cli.comparing import error_table, summary
 from motioncast.cli.reading import AS_THE_FILE_SAYS, Reading, moment, read_scene
 from motioncast.cli.writing import open_page, write_forecast
 from motioncast.errors import InputError
@@ -66,13 +66,14 @@ def forecast(
 
         say.emit(forecast_answer(answer, files))
         return
-    print(
-        f"{len(answer.people)} {'person' if len(answer.people) == 1 else 'people'}, {answer.horizon_s:.2f} s ahead "
-        f"at {answer.fps:g} frames a second, by {answer.card.name}"
-    )
+    who = "1 person" if len(answer.people) == 1 else f"{len(answer.people)} people"
+    print(f"{answer.card.name}: {who}, {answer.horizon_s:.2f} s ahead at {answer.fps:g} frames a second\n")
+    summary(answer)
+    print()
     if truth is not None:
         from motioncast.metrics.curve import error_curve
 
         error_table({answer.card.name: error_curve(answer, truth)}, answer.fps)
+        print()
     for file in files:
         print(f"written: {file}")

@@ -52,3 +52,12 @@ def moment(scene: Scene, seconds: float) -> int:
             f"--at {seconds:g} lies outside the motion, which lasts {scene.duration_s:.2f} s; give a moment within it"
         )
     return frames
+
+
+def holds_forecast(path: Path) -> bool:
+    """Whether a file is a forecast file, to be told from the scenes that are npz files too."""
+    if path.suffix.lower() != ".npz":
+        return False
+    from motioncast.formats.files import read_npz
+
+    return "samples" in read_npz(path)

@@ -7,10 +7,11 @@ from pathlib import Path
 
 from motioncast.core.forecast import Forecast
 from motioncast.core.scene import Scene
+from motioncast.errors import OutputError
 
 
 def write_forecast(forecast: Forecast, path: Path, truth: Scene | None = None, sample: int | None = None) -> list[Path]:
-    """Writes a forecast: all of it as npz, a page as html, the continued motion as any other format.
+    """Writes a forecast: all of it as npz or as a page (html), the continued motion in any other format.
 
     Args:
         forecast: The forecast.
@@ -31,14 +32,19 @@ def write_forecast(forecast: Forecast, path: Path, truth: Scene | None = None, s
 
     if suffix == ".npz":
         return list(save_forecast(forecast, path, truth))
-    return list(save_scene(turned(forecast, sample), path) if suffix in (".bvh", ".glb") else save_scene(forecast.continued(sample), path))
+    return list(save_scene(forecast.continued(sample), path))
 
 
-def turned(forecast: Forecast, sample: int | None = None) -> Scene:
-    """The continued motion with rotations on the bones of the history."""
-    from motioncast.core.kinematics import fit_rotations
+def make_folder(folder: Path) -> None:
+    """Makes a folder for results, and those above it.
 
-    return fit_rotations(forecast.continued(sample), forecast.history.select(forecast.people))
+    Raises:
+        OutputError: If that cannot be.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"cannot make the folder {folder} ({error.strerror}); give another one") from None
 
 
 def open_page(path: Path) -> None:

@@ -8,6 +8,7 @@ Reading is strict and names the line of an error. What the format leaves open is
 - An End Site becomes a joint named ``PARENT_end``, unless it lies in its parent (OFFSET 0 0 0).
 - The file states neither up axis nor unit: both are inferred (``units``), both can be given.
 
+Joints that slide (``core.kinematics``) are written with position channels of their own, which Blender follows.
 Written files are y up, in centimetres, in the channel order Z X Y, one person a file.
 """
 
@@ -22,6 +23,7 @@ from pathlib import Path
 import numpy as np
 
 from motioncast.core import rotation
+from motioncast.core.kinematics import local_places, sliding
 from motioncast.core.scene import Scene
 from motioncast.core.skeleton import Skeleton
 from motioncast.core.skeletons import recognise
@@ -386,13 +388,16 @@ def _text(scene: Scene, person: int) -> str:
         raise SceneError(f'person "{scene.people[person]}" is never seen; there is no motion to write')
     offsets = np.where(np.isin(np.arange(len(skeleton)), roots)[:, None], 0, world.points(scene.offsets[person]))
     lines, order = ["HIERARCHY"], []
+    places = local_places(scene)
+    placed = sliding(scene, places)
+    placed[roots] = True
     for root in roots:
-        _write_tree(skeleton, offsets, root, lines, order)
+        _write_tree(skeleton, offsets, root, placed, lines, order)
     quaternions = world.rotations(scene.rotations[frames, person].astype(np.float64))
     angles = np.degrees(np.unwrap(rotation.to_euler(quaternions, _WRITTEN_ORDER), axis=0))
-    positions = world.points(scene.positions[frames, person].astype(np.float64))
+    positions = world.points(places[frames, person])
     blocks = [
-        np.concatenate([positions[:, joint], angles[:, joint]], 1) if joint in roots else angles[:, joint]
+        np.concatenate([positions[:, joint], angles[:, joint]], 1) if placed[joint] else angles[:, joint]
         for joint in order
     ]
     rows = np.concatenate(blocks, 1) + 0.0
@@ -412,7 +417,7 @@ def _held(seen: np.ndarray) -> np.ndarray:
 
 
 def _write_tree(
-    skeleton: Skeleton, offsets: np.ndarray, root: int, lines: list[str], order: list[int]
+    skeleton: Skeleton, offsets: np.ndarray, root: int, placed: np.ndarray, lines: list[str], order: list[int]
 ) -> None:
     """Appends the block of a root and its children; ``order`` collects the joints that have channels."""
     stack: list[tuple[int | None, int]] = [(root, 0)]
@@ -425,11 +430,11 @@ def _write_tree(
         children = [child for child, parent in enumerate(skeleton.parents) if parent == current]
         offset = " ".join(f"{value + 0.0:.6f}" for value in offsets[current].tolist())
         parent = skeleton.parents[current]
-        if not children and _is_end(skeleton, current):
+        if not children and _is_end(skeleton, current) and not placed[current]:
             lines += [f"{indent}End Site", f"{indent}{{", f"{indent}\tOFFSET {offset}", f"{indent}}}"]
             continue
         order.append(current)
-        positions = "6 Xposition Yposition Zposition" if parent < 0 else "3"
+        positions = "6 Xposition Yposition Zposition" if placed[current] else "3"
         name = re.sub(r"\s+", "_", skeleton.names[current])
         lines += [
             f"{indent}{'ROOT' if parent < 0 else 'JOINT'} {name}",

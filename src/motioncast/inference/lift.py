@@ -28,7 +28,12 @@ CONSTANT = 0.02
 def needed_frames(history: int, model_fps: float, fps: float) -> int:
     """Frames of a scene that can influence the answer: the model's history and the filter's reach before it."""
     step = fps / model_fps
-    return int(np.ceil((history - 1) * step)) + int(np.ceil((LOBES + 1) * max(1.0, step))) + 1
+    return int(np.ceil((history - 1) * step)) + reach(step) + 2
+
+
+def reach(step: float) -> int:
+    """Frames on either side that the resampling filter reads, for moments ``step`` frames apart."""
+    return int(np.ceil(LOBES * max(1.0, step)))
 
 
 def lower(scene: Scene, skeleton: Skeleton, fps: float, history: int) -> Scene:
@@ -91,8 +96,8 @@ class Lift:
         known = np.array(sorted(served))
         hops = _hops(skeleton)[:, known]
         order = np.argsort(hops, axis=1, kind="stable")[:, :ANCHORS]
-        distance = np.maximum(np.take_along_axis(hops, order, 1), 1)
-        return cls(skeleton, known, np.array([served[joint] for joint in known]), known[order], 1.0 / distance**2)
+        weights = np.broadcast_to(1.0 / np.arange(1, order.shape[1] + 1) ** 2, order.shape)
+        return cls(skeleton, known, np.array([served[joint] for joint in known]), known[order], weights)
 
     @property
     def carried(self) -> np.ndarray:
@@ -117,13 +122,16 @@ class Lift:
             return lifted
         torso = [joint for joint in self.known if self.skeleton.landmarks[joint] in TORSO]
         turn = _kabsch(_spread(last, torso), _spread(lifted, torso), np.ones(len(torso)), np.zeros((3, 3)))
+        turns: dict[bytes, np.ndarray] = {}  # joints of one hand have the same carriers
         for joint in np.flatnonzero(self.carried):
-            carriers, anchor = self.carriers[joint], self.carriers[joint][0]
-            before = last[:, carriers] - last[:, [anchor]]
-            after = lifted[:, :, carriers] - lifted[:, :, [anchor]]
-            size = np.square(before).sum((-1, -2)).max()
-            own = _kabsch(before, after, self.weights[joint], turn * TORSO_SHARE * size)
-            lifted[:, :, joint] = lifted[:, :, anchor] + _apply(own, last[:, joint] - last[:, anchor])
+            carriers, weights = self.carriers[joint], self.weights[joint]
+            anchor, key = carriers[0], carriers.tobytes()
+            if key not in turns:
+                before = last[:, carriers] - last[:, [anchor]]
+                after = lifted[:, :, carriers] - lifted[:, :, [anchor]]
+                size = np.square(before).sum((-1, -2)).max()
+                turns[key] = _kabsch(before, after, weights, turn * TORSO_SHARE * size)
+            lifted[:, :, joint] = lifted[:, :, anchor] + _apply(turns[key], last[:, joint] - last[:, anchor])
         return lifted
 
 
@@ -158,16 +166,15 @@ def _kabsch(before: np.ndarray, after: np.ndarray, weights: np.ndarray, prior: n
 
 
 def rigid_bones(history: Scene) -> np.ndarray:
-    """Median length of each bone that keeps its length in the history, else NaN, ``(people, joints)`` metres."""
+    """Mean length of each bone that keeps its length in the history, else NaN, ``(people, joints)`` metres."""
+    joints, parents = (list(side) for side in zip(*history.skeleton.bones, strict=True))
+    both = history.observed[:, :, joints] & history.observed[:, :, parents]
+    apart = np.linalg.norm(history.positions[:, :, joints] - history.positions[:, :, parents], axis=-1)
+    count = np.maximum(both.sum(0), 1)
+    mean = (apart * both).sum(0) / count
+    deviation = np.sqrt((np.square(apart - mean) * both).sum(0) / count)
     lengths = np.full(history.observed.shape[1:], np.nan)
-    for joint, parent in history.skeleton.bones:
-        both = history.observed[:, :, joint] & history.observed[:, :, parent]
-        apart = np.linalg.norm(history.positions[:, :, joint] - history.positions[:, :, parent], axis=-1)
-        for person in np.flatnonzero(both.sum(0) >= 2):
-            seen = apart[both[:, person], person]
-            middle = np.median(seen)
-            if middle > 0 and seen.std() < CONSTANT * middle:
-                lengths[person, joint] = middle
+    lengths[:, joints] = np.where((both.sum(0) >= 2) & (deviation < CONSTANT * mean), mean, np.nan)
     return lengths
 
 

@@ -18,7 +18,7 @@ from motioncast.core.scene import Scene
 from motioncast.core.skeleton import Skeleton
 from motioncast.errors import InputError, SceneError
 from motioncast.inference.baselines import guess, one_future, present, root_velocity_damped
-from motioncast.inference.lift import Lift, between_frames, keep_lengths, lower, needed_frames, rigid_bones
+from motioncast.inference.lift import Lift, between_frames, keep_lengths, lower, needed_frames, reach, rigid_bones
 from motioncast.inference.stream import Stream
 
 FARTHEST_M = 10_000.0
@@ -92,10 +92,10 @@ class GraphForecaster:
                 "its own forecast was taken as history for the rest, and the error radius there is extrapolated"
             )
         future = self.roll(past.positions, observed, model_frames, progress)
-        answer = between_frames(positions, future, card.fps, scene.fps, frames)
         lift = Lift.between(card.joints, scene.skeleton)
         last = bridge(asked.positions, asked.observed)[-1].astype(np.float64)
-        lifted = lift(answer, last)
+        nearest = positions[-reach(card.fps / scene.fps) - 1 :]
+        lifted = between_frames(lift(nearest, last), lift(future, last), card.fps, scene.fps, frames)
         if self.rigid:
             lifted = keep_lengths(lifted, scene.skeleton, rigid_bones(asked))
         if brief.any():

@@ -1,0 +1,29 @@
+// Builds src/main.ts and page.css into src/motioncast/view; the same sources give the same bytes.
+import { readFile, writeFile } from "node:fs/promises";
+import { build } from "esbuild";
+
+const here = new URL("./", import.meta.url);
+const out = new URL("../src/motioncast/view/", here);
+const licence = await readFile(new URL("node_modules/three/LICENSE", here), "utf8");
+
+for (const [entry, name, banner] of [
+  ["src/main.ts", "page.js", `/* This bundle contains three.js.\n\n${licence.replaceAll("\r\n", "\n").trim()}\n*/`],
+  ["page.css", "page.css", ""],
+]) {
+  const result = await build({
+    absWorkingDir: new URL(".", here).pathname,
+    entryPoints: [entry],
+    banner: entry.endsWith(".ts") ? { js: banner } : {},
+    bundle: true,
+    charset: "ascii",
+    format: "iife",
+    legalComments: "inline",
+    minify: true,
+    target: "es2022",
+    write: false,
+  });
+  await writeFile(new URL(name, out), result.outputFiles[0].contents);
+  console.log(`${name}: ${(result.outputFiles[0].contents.length / 1000).toFixed(0)} kB`);
+}
+const page = await readFile(new URL("page.html", here), "utf8");
+await writeFile(new URL("page.html", out), page);

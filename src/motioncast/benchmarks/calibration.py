@@ -8,13 +8,16 @@ the wanted share is raised by 1 / n for n takes, as conformal prediction does fo
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 
-from motioncast.benchmarks.protocols import Protocol
+from motioncast.benchmarks.protocols import Protocol, windows_of
 from motioncast.benchmarks.run import forecast_windows
 from motioncast.core.forecaster import Forecaster
 from motioncast.datasets.windows import Windows
+from motioncast.errors import InputError
+from motioncast.inference.registry import load
 from motioncast.metrics.position import joint_errors
 
 LEVELS = ("0.5", "0.9")
@@ -65,3 +68,31 @@ def held(errors: np.ndarray, table: Sequence[Sequence[float]]) -> np.ndarray:
     inside = errors <= np.asarray(table)
     seen = ~np.isnan(errors)
     return (inside & seen).sum((0, 2)) / seen.sum((0, 2))
+
+
+def coverage(model: str, benchmark: str, data: Path) -> dict[str, dict[str, float]]:
+    """How much of the truth a model's radii really hold, take by take.
+
+    Args:
+        model: Name or path of a model.
+        benchmark: Name of a benchmark.
+        data: Folder with the benchmark's data.
+
+    Returns:
+        Take -> level ("0.5", "0.9") -> share held, over people, joints and time.
+
+    Raises:
+        InputError: If the model states no radii, or its setting is not the benchmark's.
+    """
+    forecaster = load(model)
+    protocol, windows = windows_of(benchmark, data)
+    levels = forecaster.card.radius.get("levels")
+    if not levels:
+        raise InputError(f'model "{model}" states no error radii; choose one that does (motioncast models)')
+    if (forecaster.card.skeleton, forecaster.card.fps) != (protocol.skeleton, protocol.fps):
+        raise InputError(f'model "{model}" is of another setting than {benchmark}; choose one of its setting')
+    by_take = errors_by_take(forecaster, protocol, windows)
+    return {
+        take: {level: float(held(errors, table[: protocol.horizon]).mean()) for level, table in levels.items()}
+        for take, errors in by_take.items()
+    }

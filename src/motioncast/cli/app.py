@@ -25,6 +25,7 @@ COMMANDS = {
     "train": "Train a model by a recipe.",
     "plot": "Draw the curves of a training run.",
     "evaluate": "Measure a model by a benchmark.",
+    "coverage": "Print how much of what really happened lies within a model's error radii.",
     "doctor": "Say which versions, extras, models and devices are here; first thing to attach to a report.",
 }
 """Every command: function of that name in the module of that name, and its line of help."""

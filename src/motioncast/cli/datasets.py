@@ -37,10 +37,8 @@ DATASETS = (
 
 def datasets() -> None:
     """List the data sets and where to obtain them."""
-    say.table(
-        ("data set", "what", "licence", "where"),
-        [(entry.name, entry.what, entry.licence, entry.origin) for entry in DATASETS],
-    )
+    for entry in DATASETS:
+        print(f"{entry.name}: {entry.what}\n  licence: {entry.licence}\n  from:    {entry.origin}")
     print("\ncheck a copy: motioncast datasets check cmu --data FOLDER")
 
 

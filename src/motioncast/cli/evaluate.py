@@ -38,6 +38,7 @@ def evaluate(
         answer = {name: value for name, value in asdict(result).items() if name not in ("windows", "takes")}
         say.emit({**answer, "commit": commit()})
         return
+    print(f"{result.model} on {result.benchmark}\n")
     say.table(
         ("metric", "after", "value", "95 % of takes"),
         [
@@ -49,7 +50,6 @@ def evaluate(
             )
             for row in result.rows
         ],
-        title=f"{result.model} on {result.benchmark}",
     )
     print(f"\n{result.windows} windows of {result.takes} takes: {result.data}; protocol {result.protocol}")
 

@@ -38,17 +38,20 @@ def _plain(value: object) -> object:
     raise TypeError(f"{type(value).__name__} has no JSON form")
 
 
-def table(columns: Sequence[str], rows: Iterable[Sequence[object]], title: str = "") -> None:
-    """Prints a table to stdout; the first column is text, the others are aligned to the right."""
-    from rich.console import Console
-    from rich.table import Table
+def table(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    """Prints a table to stdout; the first column is text, the others are aligned to the right.
 
-    drawn = Table(title=title or None, title_justify="left", box=None, pad_edge=False, padding=(0, 2, 0, 0))
-    for number, column in enumerate(columns):
-        drawn.add_column(column, justify="right" if number else "left", no_wrap=number > 0)
-    for row in rows:
-        drawn.add_row(*(str(cell) for cell in row))
-    Console(highlight=False, markup=False).print(drawn)
+    Example:
+        >>> table(("model", "ms"), [("fast", 3), ("paper", 12)])
+        model  ms
+        fast    3
+        paper  12
+    """
+    lines = [[str(cell) for cell in row] for row in (columns, *rows)]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    for first, *others in lines:
+        cells = [first.ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(others, widths[1:], strict=True))]
+        print("  ".join(cells).rstrip())
 
 
 @contextmanager

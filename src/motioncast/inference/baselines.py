@@ -69,6 +69,9 @@ RULES: dict[str, Rule] = {
 """Guesses by name. A rule gets the last frames at 15 a second, the scene and how many such frames to look ahead."""
 
 
+STRETCHING = {"rigid_bones": "each joint goes its own straight way, so limbs stretch"}
+
+
 @dataclass(frozen=True, slots=True)
 class SimpleGuess:
     """A simple guess, answered like a model.
@@ -88,6 +91,7 @@ class SimpleGuess:
         return ModelCard(
             self.name, "simple guess", "forecast", "any", MEMORY, HORIZON, FPS,
             source=(RULES[self.name].__doc__ or "").strip(), data="none", licence="Apache-2.0",
+            exceptions=STRETCHING if self.name == "constant-velocity" else {},
         )  # fmt: skip
 
     def forecast(

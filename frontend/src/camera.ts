@@ -1,0 +1,54 @@
+// Four ways to look: walking along with the people, from above, from in front, or wherever the reader likes.
+
+import { PerspectiveCamera, Vector3 } from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import type { State } from "./state";
+
+export class Eye {
+  readonly camera = new PerspectiveCamera(32, 1, 0.05, 200);
+  readonly controls: OrbitControls;
+  private readonly step = new Vector3();
+  private mode: State["camera"] | null = null;
+
+  /** `facing`: where the people look at time 0, as an angle in the floor. */
+  constructor(canvas: HTMLCanvasElement, private readonly facing: number, private readonly span: number) {
+    this.camera.up.set(0, 0, 1);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.maxPolarAngle = Math.PI / 2 - 0.02;
+    this.controls.minDistance = 0.6;
+    this.controls.maxDistance = 60;
+  }
+
+  /** Goes to where a way of looking starts. */
+  choose(mode: State["camera"], middle: Vector3): void {
+    if (mode === this.mode) return;
+    this.mode = mode;
+    if (mode === "free") return;
+    // narrow windows need more room
+    const room = this.span / Math.tan((this.camera.fov * Math.PI) / 360) / Math.min(1, this.camera.aspect * 0.95);
+    const angle = this.facing + (mode === "front" ? 0 : 0.65);
+    const lift = { follow: 0.28, front: 0.12, top: Math.PI / 2 - 0.001 }[mode];
+    const flat = Math.cos(lift) * room;
+    this.controls.target.copy(middle);
+    this.camera.position.set(
+      middle.x + Math.cos(angle) * flat, middle.y + Math.sin(angle) * flat, middle.z + Math.sin(lift) * room,
+    );
+    this.controls.update();
+  }
+
+  /** Walks along with the people, unless the reader wants to stand still. */
+  follow(middle: Vector3, sudden: boolean): void {
+    if (this.mode === "free") return;
+    this.step.copy(middle).sub(this.controls.target).multiplyScalar(sudden ? 1 : 0.12);
+    this.controls.target.add(this.step);
+    this.camera.position.add(this.step);
+    this.controls.update();
+  }
+
+  resize(width: number, height: number): void {
+    const before = this.camera.aspect;
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    if (Math.abs(before - this.camera.aspect) > 0.3) this.mode = this.mode === "free" ? "free" : null;
+  }
+}

@@ -1,0 +1,191 @@
+// Buttons, sliders and keys; they change the state and show it.
+
+import type { Description } from "./data";
+import { CAMERAS, DOUBTS, type Layer, LOOKS, SPEEDS, type State } from "./state";
+import { personColor } from "./theme";
+
+const get = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
+
+export class Controls {
+  private readonly slider = get<HTMLInputElement>("time");
+  private readonly speed = get<HTMLSelectElement>("speed");
+  private readonly samples = get<HTMLInputElement>("samples");
+  private readonly help = get<HTMLDialogElement>("help");
+
+  /** `changed` is called after every change; a change of `jump` moved the playhead. */
+  constructor(
+    private readonly about: Description, private readonly state: State, readonly first: number, readonly last: number,
+    private readonly changed: (jump: boolean) => void,
+  ) {
+    this.fill();
+    this.listen();
+    this.show();
+  }
+
+  seek(time: number): void {
+    this.state.time = Math.min(Math.max(time, this.first), this.last);
+    this.changed(true);
+  }
+
+  private stop(time: number): void {
+    this.state.playing = false;
+    this.seek(time);
+  }
+
+  private play(): void {
+    this.state.playing = !this.state.playing;
+    if (this.state.playing && this.state.time >= this.last - 1e-6) this.state.time = this.first;
+    this.changed(true);
+  }
+
+  private step(frames: number): void {
+    this.stop((Math.round(this.state.time * this.about.fps) + frames) / this.about.fps);
+  }
+
+  private toggle(layer: Layer): void {
+    if (!this.state.layers.delete(layer)) this.state.layers.add(layer);
+    this.changed(false);
+  }
+
+  private choose<K extends "camera" | "look" | "doubt">(key: K, value: State[K]): void {
+    this.state[key] = value;
+    this.changed(false);
+  }
+
+  private next<K extends "look" | "doubt">(key: K, choices: readonly State[K][]): void {
+    this.choose(key, choices[(choices.indexOf(this.state[key]) + 1) % choices.length]);
+  }
+
+  /** Everything that depends on the data alone. */
+  private fill(): void {
+    const { about } = this;
+    document.title = about.title;
+    get("title").textContent = about.title;
+    get("model").textContent = about.card.name;
+    get("caption").textContent = "Grey: what was seen. Colour: what motioncast expects."
+      + (about.truth ? " Outline: what really happened." : "");
+    const people = get("people");
+    about.people.forEach(({ id, guessed }, person) => {
+      const item = document.createElement("li");
+      item.textContent = guessed ? `${id} (simple guess)` : id;
+      item.style.setProperty("--person", personColor(person).getStyle());
+      people.append(item);
+    });
+    document.body.style.setProperty("--person", personColor(0).getStyle());
+    get("colors").style.background = this.gradient();
+    document.querySelector<HTMLElement>("[data-layer=truth]")!.hidden = about.truth === 0;
+    get("doubts").hidden = about.levels.length === 0;
+    get("looks").hidden = about.bones === 0;
+    get("draws").hidden = about.samples < 2;
+    get("levels").textContent = about.levels.map((level) => `${Math.round(Number(level) * 100)} %`).join(" and ");
+    this.samples.max = `${about.samples}`;
+    Object.assign(this.slider, { min: `${this.first}`, max: `${this.last}`, step: `${1 / about.fps / 8}` });
+    this.slider.style.setProperty("--now", `${(-this.first / (this.last - this.first)) * 100}%`);
+    this.slider.style.setProperty("--ahead", this.gradient());
+    for (const speed of SPEEDS) this.speed.append(new Option(`${speed}×`, `${speed}`));
+    for (const warning of about.warnings) {
+      const item = document.createElement("li");
+      item.textContent = warning;
+      get("warnings").append(item);
+    }
+    const { card } = about;
+    get("about-model").textContent = [
+      `${card.name} (${card.system})`, card.parameters ? `${(card.parameters / 1e6).toFixed(1)} M parameters` : "",
+      card.data, card.licence,
+    ].filter(Boolean).join(" · ");
+    this.ticks();
+  }
+
+  private gradient(): string {
+    const colors = this.about.people.slice(0, 4).map((_, person) => personColor(person).getStyle());
+    return `linear-gradient(90deg, ${colors[0]}, ${colors.slice(1).join(", ") || colors[0]})`;
+  }
+
+  private ticks(): void {
+    const length = this.last - this.first;
+    const second = [0.1, 0.2, 0.5, 1, 2, 5, 10].find((size) => length / size <= 9) ?? 20;
+    for (let count = Math.ceil(this.first / second - 1e-9); count * second <= this.last + 1e-9; count++) {
+      const time = +(count * second).toFixed(3);
+      const tick = document.createElement("span");
+      tick.textContent = time === 0 ? "now" : `${time < 0 ? "−" : "+"}${Math.abs(time)} s`;
+      tick.className = time === 0 ? "now" : "";
+      tick.style.left = `${((time - this.first) / length) * 100}%`;
+      get("ticks").append(tick);
+    }
+  }
+
+  private listen(): void {
+    const press = (id: string, act: () => void) => get(id).addEventListener("click", act);
+    press("play", () => this.play());
+    press("back", () => this.step(-1));
+    press("forward", () => this.step(1));
+    press("loop", () => { this.state.loop = !this.state.loop; this.changed(false); });
+    press("ask", () => this.help.showModal());
+    press("close", () => this.help.close());
+    press("more", () => { document.body.classList.toggle("open"); this.show(); });
+    this.slider.addEventListener("input", () => this.stop(this.slider.valueAsNumber));
+    this.speed.addEventListener("change", () => { this.state.speed = Number(this.speed.value); this.changed(false); });
+    this.samples.addEventListener("input", () => { this.state.samples = this.samples.valueAsNumber; this.changed(false); });
+    for (const button of document.querySelectorAll<HTMLElement>("button[data-layer]")) {
+      button.addEventListener("click", () => this.toggle(button.dataset.layer as Layer));
+    }
+    for (const button of document.querySelectorAll<HTMLElement>("button[data-set]")) {
+      const [key, value] = button.dataset.set!.split(":");
+      button.addEventListener("click", () => this.choose(key as "camera", value as State["camera"]));
+    }
+    addEventListener("keydown", (event) => this.key(event));
+  }
+
+  private key(event: KeyboardEvent): void {
+    if (event.ctrlKey || event.metaKey || event.altKey || this.help.open) return;
+    const target = event.target as HTMLElement;
+    if (target instanceof HTMLSelectElement || (target instanceof HTMLButtonElement && [" ", "Enter"].includes(event.key))) return;
+    const camera = CAMERAS[Number(event.key) - 1];
+    const acts: Record<string, () => void> = {
+      " ": () => this.play(),
+      ArrowLeft: () => this.step(event.shiftKey ? -10 : -1),
+      ArrowRight: () => this.step(event.shiftKey ? 10 : 1),
+      Home: () => this.stop(this.first),
+      End: () => this.stop(this.last),
+      n: () => this.stop(0),
+      s: () => this.toggle("seen"),
+      f: () => this.toggle("forecast"),
+      t: () => this.toggle("truth"),
+      p: () => this.toggle("paths"),
+      b: () => this.next("look", LOOKS),
+      e: () => this.next("doubt", DOUBTS),
+      l: () => get("loop").click(),
+      "?": () => this.help.showModal(),
+    };
+    const act = camera ? () => this.choose("camera", camera) : acts[event.key] ?? acts[event.key.toLowerCase()];
+    if (!act) return;
+    event.preventDefault();
+    act();
+  }
+
+  /** Shows the state on every button and slider. */
+  show(): void {
+    const { state, about } = this;
+    const ahead = state.time > 1e-3;
+    document.body.classList.toggle("ahead", ahead);
+    const whole = state.time.toFixed(2).replace("-", "−");
+    get("clock").textContent = state.time > -0.005 && !ahead ? "now" : `${ahead ? "+" : ""}${whole} s`;
+    get("phase").textContent = ahead ? "what motioncast expects" : "what was seen";
+    this.slider.valueAsNumber = state.time;
+    this.slider.setAttribute("aria-valuetext", `${state.time.toFixed(2)} seconds from now`);
+    this.speed.value = `${state.speed}`;
+    this.samples.valueAsNumber = state.samples;
+    get("drawn").textContent = `${state.samples} of ${about.samples}`;
+    get("play").classList.toggle("on", state.playing);
+    get("play").setAttribute("aria-label", state.playing ? "Pause" : "Play");
+    get("loop").setAttribute("aria-pressed", `${state.loop}`);
+    get("more").setAttribute("aria-expanded", `${document.body.classList.contains("open")}`);
+    for (const button of document.querySelectorAll<HTMLElement>("button[data-layer]")) {
+      button.setAttribute("aria-pressed", `${state.layers.has(button.dataset.layer as Layer)}`);
+    }
+    for (const button of document.querySelectorAll<HTMLElement>("button[data-set]")) {
+      const [key, value] = button.dataset.set!.split(":");
+      button.setAttribute("aria-pressed", `${state[key as "camera"] === value}`);
+    }
+  }
+}

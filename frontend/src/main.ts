@@ -1,0 +1,77 @@
+// The page of a forecast: what was seen, what is expected, and what really happened.
+
+import { Chart } from "./curve";
+import { Controls } from "./controls";
+import { readPage } from "./data";
+import { Stage } from "./stage";
+import { readState, writeState } from "./state";
+import { onThemeChange } from "./theme";
+
+declare global {
+  interface Window { __mc?: { ready: boolean; state: unknown; seek: (time: number) => void; colors: () => number } }
+}
+
+async function start(): Promise<void> {
+  const page = await readPage();
+  const { about } = page;
+  const first = (1 - about.now) / about.fps, last = (about.frames - about.now) / about.fps;
+  const state = readState(first, last, about.samples);
+  const canvas = document.getElementById("stage") as HTMLCanvasElement;
+  const stage = new Stage(canvas, page);
+  let stale = true, sudden = true, rewrite = 0;
+
+  const change = (jump: boolean) => {
+    stale = true;
+    sudden ||= jump;
+    controls.show();
+    chart?.show(state.time);
+    clearTimeout(rewrite);
+    if (!state.playing) rewrite = window.setTimeout(() => writeState(state), 250);
+  };
+  const controls = new Controls(about, state, first, last, change);
+  const errors = document.getElementById("errors")!;
+  const chart = about.curves.length
+    ? new Chart(errors, about, (time) => { state.playing = false; controls.seek(time); })
+    : null;
+  errors.hidden = chart === null;
+
+  stage.eye.controls.addEventListener("change", () => { stale = true; });
+  onThemeChange(() => { stage.paint(); change(false); });
+  new ResizeObserver(() => { stage.resize(); change(true); }).observe(canvas);
+  stage.resize();
+  change(true);
+
+  let before = performance.now();
+  const tick = (now: number) => {
+    // a page that slept does not jump
+    const passed = Math.min((now - before) / 1000, 0.25);
+    before = now;
+    if (state.playing) {
+      state.time += passed * state.speed;
+      if (state.time >= last) {
+        const again = state.loop;
+        state.playing = again;
+        state.time = again ? Math.max(first, -1.5) : last;
+        sudden ||= again;
+      }
+      change(false);
+    }
+    if (stale) {
+      stale = false;
+      stage.draw(state, sudden || !state.playing);
+      sudden = false;
+    }
+    requestAnimationFrame(tick);
+  };
+  requestAnimationFrame(tick);
+  window.__mc = {
+    ready: true, state, seek: (time) => { state.playing = false; controls.seek(time); },
+    colors: () => { stage.draw(state, true); return stage.colorsDrawn(); },
+  };
+}
+
+start().catch((error: Error) => {
+  const message = document.getElementById("failed")!;
+  message.textContent = `This page cannot be shown here: ${error.message}. A browser from 2023 or later with WebGL 2 is needed.`;
+  message.hidden = false;
+});

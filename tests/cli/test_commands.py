@@ -1,0 +1,111 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from motioncast.cli.comparing import error_table
+from motioncast.cli.evaluate import commit
+from motioncast.cli.info import bone_lengths
+from motioncast.cli.time import measure
+from motioncast.core.scene import Scene
+from motioncast.formats.load import load_forecast, load_truth
+from motioncast.inference.registry import list_models
+
+
+def test_demo(command, tmp_path: Path) -> None:
+    done = command("demo")
+    assert done.status == 0
+    rows = {line.split()[0]: [int(cell) for cell in line.split()[1:]] for line in done.out.splitlines() if "velocity" in line}
+    assert set(rows) == {"zero-velocity", "constant-velocity", "neck-velocity", "root-velocity-damped"}
+    assert all(len(errors) == 5 for errors in rows.values())
+    folder = tmp_path / "motioncast-demo"
+    assert sorted(path.name for path in folder.iterdir()) == ["forecast.html", "forecast.npz"]
+    forecast, truth = load_forecast(folder / "forecast.npz"), load_truth(folder / "forecast.npz")
+    assert len(forecast.people) == 2
+    assert truth is not None
+    assert truth.frames == len(forecast.best)
+
+
+def test_info_shows_the_mapping(walk: Path, command) -> None:
+    done = command("info", walk)
+    assert done.status == 0
+    assert "60 frames at 30 a second, 2.00 s" in done.out
+    (line,) = [line for line in done.out.splitlines() if line.startswith("left_knee ")]
+    assert line.split() == ["left_knee", "left_knee", "left_hip", "42.5", "cm"]
+
+
+def test_bone_lengths_count_only_what_was_seen(walkers: Scene) -> None:
+    observed = walkers.observed.copy()
+    knee = walkers.skeleton.index("left_knee")
+    observed[:, :, knee] = False
+    lengths = bone_lengths(Scene(walkers.positions, walkers.skeleton, 30, observed))
+    assert np.isnan(lengths[knee])
+    assert np.isnan(lengths[walkers.skeleton.index("left_ankle")])
+    assert lengths[walkers.skeleton.index("right_knee")] == pytest.approx(0.425, abs=0.01)
+
+
+def test_a_map_names_joints(walk: Path, command) -> None:
+    Path("names.txt").write_text("left_wrist = left_hand  # it was a glove\n", encoding="utf-8")
+    done = command("info", walk, "--map", "names.txt")
+    assert done.status == 0
+    (line,) = [line for line in done.out.splitlines() if line.startswith("left_wrist ")]
+    assert line.split()[1] == "left_hand"
+
+
+def test_models(command) -> None:
+    done = command("models")
+    assert done.status == 0
+    answer = command("models", "--json").answer("models")
+    assert [card["name"] for card in answer["models"]] == [card.name for card in list_models()]
+    for card in answer["models"]:
+        assert card["name"] in done.out
+
+
+def test_time(command) -> None:
+    answer = command("time", "somoformer-fast", "--people", "2", "--rounds", "3", "--json").answer("time")
+    assert answer["people"] == 2
+    assert 0 < answer["q1_ms"] <= answer["median_ms"] <= answer["q3_ms"]
+    done = command("time", "zero-velocity", "--rounds", "2")
+    assert [line.split()[0] for line in done.out.splitlines()[1:7]] == ["1", "2", "3", "4", "8", "16"]
+
+
+def test_quartiles_are_of_the_calls(monkeypatch: pytest.MonkeyPatch) -> None:
+    ticks = iter([0.0, 0.001, 10.0, 10.002, 20.0, 20.003])
+    monkeypatch.setattr("motioncast.cli.time.perf_counter", lambda: next(ticks))
+    timing = measure(lambda: None, people=1, rounds=3)
+    np.testing.assert_allclose((timing.q1_ms, timing.median_ms, timing.q3_ms), (1.5, 2.0, 2.5), rtol=1e-6)
+
+
+def test_doctor_names_extras_and_models(command) -> None:
+    done = command("doctor")
+    assert done.status == 0
+    for word in ("numpy", "extra train", "extra c3d", "somoformer-fast"):
+        assert word in done.out
+
+
+def test_datasets(command) -> None:
+    done = command("datasets")
+    assert done.status == 0
+    assert "mocap.cs.cmu.edu" in done.out
+
+
+def test_a_folder_without_the_data_set(command, tmp_path: Path) -> None:
+    done = command("datasets", "check", "cmu", "--data", tmp_path)
+    assert done.status == 2
+    assert "cmu_NNN.tar.xz" in done.err
+
+
+@pytest.mark.data
+def test_evaluate(command, shared: Path) -> None:
+    answer = command("evaluate", "zero-velocity", "somof-strangers", "--data", shared, "--json").answer("result")
+    assert answer["rows"][-1]["value"] == pytest.approx(1.0, abs=1e-6)
+    assert answer["commit"] == commit()
+
+
+def test_errors_that_are_unknown_show_as_such(capsys: pytest.CaptureFixture[str]) -> None:
+    error_table({"long": np.linspace(0, 1, 30), "short": np.linspace(0, 1, 30)[:6]}, fps=15)
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].split() == ["error", "in", "mm", "after", "0.2", "s", "0.4", "s", "1", "s", "2", "s"]
+    assert lines[2].split()[-2:] == ["-", "-"]

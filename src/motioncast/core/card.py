@@ -20,7 +20,7 @@ class ModelCard:
         name: Name by which it is loaded.
         system: The system that it implements, such as ``SoMoFormer``.
         task: What it answers; ``forecast`` for positions ahead.
-        skeleton: Name of its skeleton (``core.skeletons.SKELETONS``).
+        skeleton: Name of its skeleton (``core.skeletons.SKELETONS``), or ``any``.
         history: Frames that it reads.
         horizon: Frames that it answers in one pass.
         fps: Its frame rate.
@@ -85,6 +85,6 @@ class ModelCard:
         if not isinstance(values, dict) or not needed <= set(values) <= known:
             odd = sorted(set(values) - known) if isinstance(values, dict) else values
             raise InputError(f"the model card has unknown or missing entries ({odd}); expected at least {sorted(needed)}")
-        if values["skeleton"] not in SKELETONS:
+        if values["skeleton"] not in (*SKELETONS, "any"):
             raise InputError(f'the model card names the skeleton "{values["skeleton"]}"; known: {sorted(SKELETONS)}')
         return cls(**values)

@@ -1,0 +1,50 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from motioncast.core.scene import Scene
+from motioncast.core.skeletons import MRT15, SOMOF13
+from motioncast.errors import SceneError
+from motioncast.inference.baselines import SimpleGuess
+from motioncast.testing import walkers
+
+NECK, PELVIS = MRT15.index("neck"), 0
+
+
+def ask(name: str, scene: Scene, horizon_s: float = 3.0) -> np.ndarray:
+    return SimpleGuess(name).forecast(scene, horizon_s=horizon_s).samples[0]
+
+
+def test_definitions_at_their_own_rate() -> None:
+    scene = walkers(frames=20)
+    past, last = scene.positions.astype(np.float64), scene.positions[-1]
+    for frame in (0, 4, 44):
+        ahead = frame + 1
+        expected = {
+            "zero-velocity": last,
+            "constant-velocity": last + ahead * (past[-1] - past[-2]),
+            "neck-velocity": last + ahead * np.diff(past[-4:, :, NECK], axis=0).mean(0)[:, None],
+            "root-velocity-damped": last
+            + sum(0.95**k for k in range(ahead)) * np.diff(past[-8:, :, PELVIS], axis=0).mean(0)[:, None],
+        }
+        for name, positions in expected.items():
+            np.testing.assert_allclose(ask(name, scene)[frame], positions, atol=1e-4, err_msg=name)
+
+
+def test_a_skeleton_without_pelvis_moves_by_its_hips() -> None:
+    scene = walkers(frames=20).on(SOMOF13)
+    hips = scene.positions[:, :, :2].mean(2)
+    step = np.diff(hips[-8:], axis=0).mean(0)
+    np.testing.assert_allclose(ask("root-velocity-damped", scene)[0], scene.positions[-1] + step[:, None], atol=1e-4)
+
+
+def test_history_of_one_frame_stays() -> None:
+    scene = walkers(frames=20)[-1:]
+    for name in ("neck-velocity", "root-velocity-damped", "constant-velocity"):
+        np.testing.assert_allclose(ask(name, scene)[-1], scene.positions[-1], atol=1e-5)
+
+
+def test_nobody_is_refused() -> None:
+    scene = walkers(frames=20)
+    with pytest.raises(SceneError, match="nobody"):
+        ask("zero-velocity", Scene(scene.positions, MRT15, 15, np.zeros_like(scene.observed)))

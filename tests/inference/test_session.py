@@ -1,0 +1,88 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from motioncast.core.scene import Scene
+from motioncast.core.skeleton import Skeleton
+from motioncast.core.skeletons import MRT15
+from motioncast.errors import InputError, ModelNotFound, SceneError, SkeletonError
+from motioncast.inference.registry import DEFAULT_MODEL, list_models, load
+from motioncast.inference.session import GraphForecaster
+from motioncast.testing import walkers
+
+
+@pytest.fixture(scope="module")
+def model() -> GraphForecaster:
+    model = load(DEFAULT_MODEL)
+    assert isinstance(model, GraphForecaster)
+    return model
+
+
+def test_the_default_model_comes_first_and_ships() -> None:
+    assert list_models()[0].name == DEFAULT_MODEL
+
+
+def test_an_unknown_name_brings_the_closest() -> None:
+    with pytest.raises(ModelNotFound, match='did you mean "somoformer-fast"'):
+        load("somoformer-fsat")
+    with pytest.raises(ModelNotFound, match="no file"):
+        load("nowhere.onnx")
+
+
+def test_a_short_history_is_refused_with_what_is_needed(model: GraphForecaster) -> None:
+    with pytest.raises(SceneError, match="at least 29 frames"):
+        model.forecast(walkers(frames=20, fps=30))
+
+
+def test_geographic_coordinates_are_refused(model: GraphForecaster) -> None:
+    scene = walkers()
+    with pytest.raises(SceneError, match="from the origin"):
+        model.forecast(replace(scene, positions=scene.positions + 5e5))
+
+
+def test_a_skeleton_without_knees_is_refused(model: GraphForecaster) -> None:
+    scene = walkers()
+    names = tuple("thing" if name == "left_knee" else name for name in MRT15.names)
+    odd = Skeleton(names, MRT15.parents, tuple("" if n == "thing" else n for n in names), "odd")
+    with pytest.raises(SkeletonError, match="left_knee"):
+        model.forecast(Scene(scene.positions, odd, 15))
+
+
+def test_far_from_the_origin_the_answer_is_as_exact(model: GraphForecaster) -> None:
+    scene = walkers()
+    far = replace(scene, positions=scene.positions + np.array([800.0, -600.0, 0.0], np.float32))
+    apart = model.forecast(far).samples - model.forecast(scene).samples - np.array([800.0, -600.0, 0.0])
+    assert np.abs(apart).max() < 2e-3  # float32 itself is 6e-5 there, and the history is rounded to it
+
+
+def test_batches_do_not_mix(model: GraphForecaster) -> None:
+    history = np.stack([walkers(frames=15, seed=seed).positions for seed in range(4)])
+    observed = np.ones(history.shape[:-1], bool)
+    whole = model.run(history, observed)
+    for index in range(4):
+        np.testing.assert_allclose(model.run(history[[index]], observed[[index]])[0], whole[index], atol=1e-5)
+
+
+def test_the_radius_grows_with_time_and_nests(model: GraphForecaster) -> None:
+    answer = model.forecast(walkers(fps=30, frames=60), horizon_s=4.0)
+    if not model.card.radius:
+        pytest.skip("the card states no radii")
+    half, most = answer.radius_m["0.5"], answer.radius_m["0.9"]
+    assert half.shape == (120, 15)
+    assert (np.diff(half, axis=0) >= -1e-6).all()
+    assert (half <= most).all()
+
+
+def test_without_rigid_bones_the_graph_speaks_for_itself(model: GraphForecaster) -> None:
+    scene = walkers()
+    raw = replace(model, rigid=False).forecast(scene).samples[0]
+    graph = model.run(scene.positions[None, -15:], scene.observed[None, -15:])[0]
+    np.testing.assert_allclose(raw, graph, atol=1e-5)
+
+
+def test_a_card_that_is_missing_is_named(tmp_path) -> None:
+    (tmp_path / "lonely.onnx").write_bytes(b"")
+    with pytest.raises(InputError, match=r"lonely\.json"):
+        load(tmp_path / "lonely.onnx")

@@ -1,0 +1,88 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from motioncast.core.skeletons import MRT15
+from motioncast.errors import SceneError
+from motioncast.inference.registry import DEFAULT_MODEL, load
+from motioncast.inference.session import GraphForecaster
+from motioncast.inference.stream import Stream
+from motioncast.testing import walkers
+
+SCENE = walkers(people=2, frames=90, fps=30)
+
+
+def frame(index: int, *people: int) -> dict[str, np.ndarray]:
+    return {SCENE.people[person]: SCENE.positions[index, person] for person in people or (0, 1)}
+
+
+@pytest.fixture
+def stream() -> Stream:
+    model = load(DEFAULT_MODEL)
+    assert isinstance(model, GraphForecaster)
+    return model.stream(fps=30)
+
+
+def test_the_numbers_of_a_stream_are_those_of_a_batch(stream: Stream) -> None:
+    answer = None
+    for index in range(90):
+        answer = stream.push(frame(index), index / 30)
+    assert answer is not None
+    np.testing.assert_array_equal(answer.samples, load(DEFAULT_MODEL).forecast(SCENE).samples)
+    assert not answer.guessed.any()
+
+
+def test_the_first_moments_are_a_flagged_guess(stream: Stream) -> None:
+    answer = stream.push(frame(0))
+    assert answer is not None
+    assert answer.guessed.all()
+    np.testing.assert_allclose(answer.samples[0, -1], SCENE.positions[0], atol=1e-5)
+
+
+def test_a_late_frame_fills_its_place(stream: Stream) -> None:
+    other = load(DEFAULT_MODEL).stream(fps=30)  # pyright: ignore[reportAttributeAccessIssue]
+    for index in (*range(60), *range(61, 80)):
+        stream.push(frame(index), index / 30)
+    stream.push(frame(60), 60 / 30)
+    for index in range(80):
+        other.push(frame(index), index / 30)
+    np.testing.assert_array_equal(stream.observed, other.observed)
+    np.testing.assert_array_equal(stream.positions, other.positions)
+
+
+def test_a_lost_frame_is_a_gap_and_an_ancient_one_is_ignored(stream: Stream) -> None:
+    for index in (*range(60), *range(63, 80)):
+        answer = stream.push(frame(index), index / 30)
+    assert answer is not None
+    before = stream.positions.copy()
+    stream.push(frame(0), -100.0)
+    np.testing.assert_array_equal(stream.positions, before)
+
+
+def test_people_come_and_go(stream: Stream) -> None:
+    for index in range(40):
+        stream.push(frame(index, 0))
+    answer = stream.push(frame(40))
+    assert answer is not None
+    assert answer.guessed.tolist() == [False, True]
+    for index in range(41, 90):
+        answer = stream.push(frame(index, 1))
+    for _ in range(stream.memory):
+        answer = stream.push(frame(89, 1))
+    assert stream.people == [SCENE.people[1]]
+    assert answer is not None
+    assert answer.people == (SCENE.people[1],)
+    assert stream.push({}) is None
+
+
+def test_what_is_not_seen_may_be_nan_and_odd_poses_are_refused(stream: Stream) -> None:
+    poses = frame(0)
+    poses[SCENE.people[0]] = poses[SCENE.people[0]].copy()
+    poses[SCENE.people[0]][MRT15.index("left_wrist")] = np.nan
+    answer = stream.push(poses)
+    assert answer is not None
+    assert np.isfinite(answer.samples).all()
+    with pytest.raises(SceneError, match="15 joints"):
+        stream.push({"ada": np.zeros((14, 3))})
+    with pytest.raises(SceneError, match="time stamp"):
+        stream.push(frame(0), float("nan"))

@@ -9,6 +9,7 @@ export class Eye {
   readonly controls: OrbitControls;
   private readonly step = new Vector3();
   private mode: State["camera"] | null = null;
+  private free = 1; // the share of the height that nothing covers
 
   /** `facing`: where the people look at time 0, as an angle in the floor. */
   constructor(canvas: HTMLCanvasElement, private readonly facing: number, private readonly span: number) {
@@ -25,7 +26,7 @@ export class Eye {
     this.mode = mode;
     if (mode === "free") return;
     // narrow windows need more room
-    const room = this.span / Math.tan((this.camera.fov * Math.PI) / 360) / Math.min(1, this.camera.aspect * 0.95);
+    const room = this.span / Math.tan((this.camera.fov * Math.PI) / 360) / Math.min(this.free, this.camera.aspect);
     const angle = this.facing + (mode === "front" ? 0 : 0.65);
     const lift = { follow: 0.28, front: 0.12, top: Math.PI / 2 - 0.001 }[mode];
     const flat = Math.cos(lift) * room;
@@ -45,10 +46,11 @@ export class Eye {
     this.controls.update();
   }
 
-  resize(width: number, height: number): void {
+  resize(width: number, height: number, top: number, bottom: number): void {
     const before = this.camera.aspect;
     this.camera.aspect = width / height;
-    this.camera.updateProjectionMatrix();
+    this.free = Math.max(1 - (top + bottom) / height, 0.3);
+    this.camera.setViewOffset(width, height, 0, (bottom - top) / 2, width, height);
     if (Math.abs(before - this.camera.aspect) > 0.3) this.mode = this.mode === "free" ? "free" : null;
   }
 }

@@ -71,8 +71,7 @@ export class Controls {
       item.style.setProperty("--person", personColor(person).getStyle());
       people.append(item);
     });
-    document.body.style.setProperty("--person", personColor(0).getStyle());
-    get("colors").style.background = this.gradient();
+    get("colors").style.background = this.stripes();
     document.querySelector<HTMLElement>("[data-layer=truth]")!.hidden = about.truth === 0;
     get("doubts").hidden = about.levels.length === 0;
     get("looks").hidden = about.bones === 0;
@@ -81,7 +80,7 @@ export class Controls {
     this.samples.max = `${about.samples}`;
     Object.assign(this.slider, { min: `${this.first}`, max: `${this.last}`, step: `${1 / about.fps / 8}` });
     this.slider.style.setProperty("--now", `${(-this.first / (this.last - this.first)) * 100}%`);
-    this.slider.style.setProperty("--ahead", this.gradient());
+    this.slider.style.setProperty("--ahead", this.stripes());
     for (const speed of SPEEDS) this.speed.append(new Option(`${speed}×`, `${speed}`));
     for (const warning of about.warnings) {
       const item = document.createElement("li");
@@ -96,9 +95,12 @@ export class Controls {
     this.ticks();
   }
 
-  private gradient(): string {
-    const colors = this.about.people.slice(0, 4).map((_, person) => personColor(person).getStyle());
-    return `linear-gradient(90deg, ${colors[0]}, ${colors.slice(1).join(", ") || colors[0]})`;
+  /** The colours of the people, side by side. */
+  private stripes(): string {
+    const count = Math.min(this.about.people.length, 8);
+    const stops = Array.from({ length: count }, (_, person) =>
+      `${personColor(person).getStyle()} ${(100 * person) / count}% ${(100 * (person + 1)) / count}%`);
+    return `linear-gradient(${stops.join(", ")})`;
   }
 
   private ticks(): void {

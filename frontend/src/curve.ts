@@ -2,7 +2,7 @@
 
 import type { Curve, Description } from "./data";
 
-const WIDTH = 320, HEIGHT = 150, LEFT = 34, RIGHT = 8, TOP = 8, BOTTOM = 20;
+const WIDTH = 320, HEIGHT = 150, LEFT = 38, RIGHT = 16, TOP = 8, BOTTOM = 20;
 
 function svg(name: string, attributes: Record<string, string | number>, parent?: Element): SVGElement {
   const element = document.createElementNS("http://www.w3.org/2000/svg", name);
@@ -12,7 +12,7 @@ function svg(name: string, attributes: Record<string, string | number>, parent?:
 }
 
 export function metres(value: number): string {
-  return value < 1 ? `${Math.round(value * 100)} cm` : `${value.toFixed(2)} m`;
+  return value < 1 ? `${Math.round(value * 100)} cm` : `${+value.toFixed(2)} m`;
 }
 
 export class Chart {

@@ -10,7 +10,7 @@ export interface Description {
   frames: number; // history and forecast together
   samples: number;
   truth: number; // frames of the truth track, the last history frame included; 0: none
-  skeleton: { label: string; names: string[]; bones: [number, number][]; hips: number[]; feet: number[] };
+  skeleton: { label: string; names: string[]; bones: [number, number][]; hips: number[]; feet: number[]; ends: number[] };
   people: Person[];
   levels: string[];
   curves: Curve[];

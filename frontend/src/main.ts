@@ -37,8 +37,14 @@ async function start(): Promise<void> {
 
   stage.eye.controls.addEventListener("change", () => { stale = true; });
   onThemeChange(() => { stage.paint(); change(false); });
-  new ResizeObserver(() => { stage.resize(); change(true); }).observe(canvas);
-  stage.resize();
+  const box = (id: string) => document.getElementById(id)!.getBoundingClientRect();
+  const resize = () => {
+    const narrow = canvas.clientWidth <= 760;
+    const low = narrow && chart ? box("now").top : box("bar").top;
+    stage.resize(narrow ? box("top").bottom : box("now").bottom, canvas.clientHeight - low);
+  };
+  new ResizeObserver(() => { resize(); change(true); }).observe(canvas);
+  resize();
   change(true);
 
   let before = performance.now();

@@ -96,12 +96,13 @@ export class Stage {
     if (this.truth) this.ways.add(ribbon(this.truth, hips, 0, about.truth - 1, 0.008, true, () => this.look.ink));
   }
 
-  resize(): void {
+  /** Fits the picture into the window; `top` and `bottom` are heights in pixels that other things cover. */
+  resize(top: number, bottom: number): void {
     const canvas = this.renderer.domElement;
     const { clientWidth: width, clientHeight: height } = canvas;
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
-    this.eye.resize(width, height);
+    this.eye.resize(width, height, top, bottom);
   }
 
   draw(state: State, sudden: boolean): void {
@@ -126,6 +127,7 @@ export class Stage {
       if (ghost.visible) { this.truthPoses!.read(frame, person, ghost.bones); ghost.paint(this.look.ink); }
     });
     this.sticks.show(this.main, (person) => (bodily(this.main, person) ? null : color(person)));
+    this.truthSticks.visible = this.truth !== null;
     if (this.truth) {
       this.truthSticks.show(this.truth, (person) => (truly && !bodily(this.truth!, person) ? this.look.ink : null));
     }
@@ -152,7 +154,7 @@ export class Stage {
   }
 
   private tint(person: number, ahead: boolean): Color {
-    return ahead ? this.colors[person] : this.look.seen.clone().lerp(this.colors[person], 0.22);
+    return ahead ? this.colors[person] : this.look.seen.clone().lerp(this.colors[person], 0.1);
   }
 
   private drawLines(state: State, frame: number, ahead: boolean): void {
@@ -180,7 +182,7 @@ export class Stage {
         const spot = track.middle(person, [foot]);
         if (!spot) continue;
         const near = Math.max(1 - Math.max(spot[2] - 0.08, 0) / 0.5, 0);
-        this.shadows.mark(spot[0], spot[1], 0.003, 0.2, this.look.shadow, 0.6 * near * strength);
+        this.shadows.mark(spot[0], spot[1], 0.003, 0.2, this.look.shadow, 0.3 * near * strength);
       }
     };
     people.forEach((_, person) => {
@@ -198,7 +200,7 @@ export class Stage {
           if (spot) this.rings.mark(spot[0], spot[1], 0.01 + 0.001 * level, wide, this.colors[person], strength);
           return;
         }
-        for (let joint = 0; joint < joints; joint++) {
+        for (const joint of skeleton.ends) {
           const spot = this.main.middle(person, [joint]);
           if (spot) this.balls.mark(...spot, radius(joint), this.colors[person], strength * 0.6);
         }
@@ -218,7 +220,7 @@ export class Stage {
       const hips = this.main.middle(person, skeleton.hips);
       if (hips) { sum.add(new Vector3(...hips)); count++; }
     });
-    if (count) this.centre.set(sum.x / count, sum.y / count, Math.max(sum.z / count - 0.12, 0.4));
+    if (count) this.centre.set(sum.x / count, sum.y / count, Math.max(sum.z / count - 0.06, 0.4));
     return this.centre;
   }
 

@@ -19,12 +19,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-from motioncast.core.rotation import between, conjugate, from_matrix, multiply, rotate, slerp
+from motioncast.core.rotation import (
+    between,
+    conjugate,
+    from_axis_angle,
+    from_matrix,
+    multiply,
+    rotate,
+    slerp,
+    to_axis_angle,
+)
 from motioncast.core.skeleton import Skeleton
 from motioncast.core.skeletons import SOMOF13
 
 TWIST_STEP = 0.35
 """Largest change of a limb's twist from frame to frame, in radians."""
+
+MOST_WRIST = 1.2
+"""A hand bows no further than this from the forearm, in radians; captures of hands have wild frames."""
 
 LEFT, BACK, UP = np.eye(3)
 """Axes of the body at rest."""
@@ -242,7 +254,10 @@ def _place_arm(pose: _Pose, side: str) -> None:
         pose.put(f"hand_{letter}", wrist, forearm)
     else:
         lower = rotate(forearm, pose.body.axes[pose.body.bones.index(f"lowerarm_{letter}")])
-        pose.put(f"hand_{letter}", wrist, multiply(between(lower, tip - wrist), forearm))
+        bow = to_axis_angle(between(lower, tip - wrist))
+        angle = np.linalg.norm(bow, axis=-1, keepdims=True)
+        swing = from_axis_angle(bow * np.minimum(1, MOST_WRIST / np.maximum(angle, 1e-9)))
+        pose.put(f"hand_{letter}", wrist, multiply(swing, forearm))
 
 
 def _place_leg(pose: _Pose, side: str) -> None:

@@ -36,13 +36,14 @@ def demo(*, model: str = "somoformer-fast", out: Path = Path("motioncast-demo"),
     curves = {name: error_curve(guess, truth) for name, guess in answers.items()}
 
     print(f"A couple dances salsa. {history.duration_s:.1f} s were seen, {HORIZON_S:g} s are forecast by {model},")
-    print("which was never trained on this take. Against what really happened, over two people and all joints:\n")
+    print("which was never trained on this take. Against what really happened, mean of both people's joints:\n")
     error_table(curves, answer.fps)
 
     make_folder(out)
     page = out / "forecast.html"
     save_forecast(answer, out / "forecast.npz", truth)
-    write_page(answer, page, truth=truth, title="Salsa: what will they do next?", curves=curves)
+    drawn = {name: (answer.times_s[: len(curve)], curve) for name, curve in curves.items()}
+    write_page(answer, page, truth=truth, title="Salsa: what will they do next?", curves=drawn)
     print(f"\nLook at it:      {page}  (one file, open it in a browser)")
     print(f"Numbers:         {out / 'forecast.npz'}")
     print("Your own motion: motioncast forecast a.bvh b.bvh --view")

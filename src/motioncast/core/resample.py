@@ -76,17 +76,14 @@ def sample(values: np.ndarray, times: np.ndarray, step: float = 1.0) -> np.ndarr
     weights = np.where(np.abs(offset) < LOBES, np.sinc(offset) * np.sinc(offset / LOBES), 0.0)
     weights /= weights.sum(1, keepdims=True)
     flat = values.reshape(frames, -1).astype(np.float64)
-    # one matrix (moments x frames); a reflected sample counts for the end twice and for its mirror image once less
-    matrix = np.zeros((len(times), frames))
-    rows = np.broadcast_to(np.arange(len(times))[:, None], index.shape)
-    early, late = index < 0, index > frames - 1
-    inside = ~(early | late)
-    np.add.at(matrix, (rows[inside], index[inside]), weights[inside])
-    for outside, end in ((early, 0), (late, frames - 1)):
-        mirrored = np.clip(2 * end - index[outside], 0, frames - 1)
-        np.add.at(matrix, (rows[outside], np.full(len(mirrored), end)), 2 * weights[outside])
-        np.add.at(matrix, (rows[outside], mirrored), -weights[outside])
-    return (matrix @ flat).reshape(len(times), *values.shape[1:])
+    result = np.zeros((len(times), flat.shape[1]))
+    for tap in range(index.shape[1]):  # a loop over taps keeps long takes within memory
+        at, weight = index[:, tap], weights[:, tap, None]
+        end = np.clip(at, 0, frames - 1)
+        mirror = np.clip(2 * end - at, 0, frames - 1)
+        inside = (at == end)[:, None]
+        result += weight * np.where(inside, flat[end], 2 * flat[end] - flat[mirror])
+    return result.reshape(len(times), *values.shape[1:])
 
 
 def bridge(positions: np.ndarray, observed: np.ndarray) -> np.ndarray:

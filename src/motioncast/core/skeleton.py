@@ -126,14 +126,23 @@ STAND_INS: dict[str, tuple[tuple[str, ...], ...]] = {
     "pelvis": (("left_hip", "right_hip"), ("lower_spine",)),
     "neck": (("neck_base",), ("left_shoulder", "right_shoulder"), ("upper_spine",)),
     "neck_base": (("neck",), ("left_shoulder", "right_shoulder"), ("upper_spine",)),
-    "head": (("head_top",), ("left_ear", "right_ear"), ("nose",), ("upper_neck",)),
+    "head": (
+        ("upper_neck", "head_top"), ("left_ear", "right_ear"), ("nose",), ("head_top",), ("upper_neck",),
+    ),
+    "upper_neck": (("neck", "head"), ("head",)),
     "left_wrist": (("left_hand",),),
     "right_wrist": (("right_hand",),),
     "left_ankle": (("left_heel",),),
     "right_ankle": (("right_heel",),),
+    "left_foot": (("left_toe",),),
+    "right_foot": (("right_toe",),),
+    "left_toe": (("left_foot",),),
+    "right_toe": (("right_foot",),),
+    "left_hand": (("left_wrist",),),
+    "right_hand": (("right_wrist",),),
     "left_shoulder": (("left_collar",),),
     "right_shoulder": (("right_collar",),),
-}
+}  # fmt: skip
 """Places that may serve for one that a skeleton lacks, nearest first; several places mean their middle."""
 
 LANDMARKS: tuple[str, ...] = (
@@ -148,4 +157,8 @@ LANDMARKS: tuple[str, ...] = (
         )
     ),
 )  # fmt: skip
-"""Every landmark that a joint can mark."""
+"""Every landmark that a joint can mark.
+
+``head`` is the middle of the head (the end of CMU's head bone), ``upper_neck`` the base of the skull, ``neck_base``
+the end of the thorax; ``foot`` is the ball of the foot, ``toe`` the tip; ``hand`` the knuckles, ``fingers`` the tips.
+"""

@@ -1,6 +1,6 @@
 """Forecast the people of a file and read the answer.
 
-    python examples/00_forecast_a_file.py a.bvh b.bvh
+python examples/00_forecast_a_file.py a.bvh b.bvh
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Continue a motion file: what was seen, then what is foretold, as BVH and as glTF for Blender and game engines.
+"""Continue a motion file: what was seen, then what is foretold, as BVH and glTF.
 
-    python examples/02_continue_an_animation.py dance.bvh
+python examples/02_continue_an_animation.py dance.bvh
 """
 
 from __future__ import annotations

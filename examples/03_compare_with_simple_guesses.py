@@ -1,6 +1,6 @@
 """Is the model better than standing still? Compare it with simple guesses on your own recording.
 
-    python examples/03_compare_with_simple_guesses.py take.npz
+python examples/03_compare_with_simple_guesses.py take.npz
 """
 
 from __future__ import annotations

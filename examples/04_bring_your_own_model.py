@@ -1,8 +1,9 @@
-"""A model of your own: it has a card and answers scenes. Hold it to the contract before you trust its numbers.
+"""A model of your own: it has a card and answers scenes. Hold it to the contract first.
 
     python examples/04_bring_your_own_model.py
 
-To load it by name, let your package name a function that returns it as an entry point of ``motioncast.models``.
+To load it by name, let your package name a function that returns it as an entry point of
+``motioncast.models``.
 """
 
 from __future__ import annotations
@@ -39,7 +40,9 @@ class FadingVelocity:
     ) -> mc.Forecast:
         people = [name for row, name in enumerate(scene.people) if scene.observed[-1, row].any()]
         if not people:
-            raise SceneError("nobody is seen in the last frame; end the scene with a frame that shows somebody")
+            raise SceneError(
+                "nobody is seen in the last frame; end the scene with a frame that shows somebody"
+            )
         recent = scene[-round(0.2 * scene.fps) - 1 :].select(people)
         poses = bridge(recent.positions, recent.observed).astype(np.float64)  # what was not seen is filled in
         velocity = (poses[-1] - poses[0]).mean(1, keepdims=True) * scene.fps / max(1, len(poses) - 1)

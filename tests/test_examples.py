@@ -22,7 +22,9 @@ LEAVES = {"00_forecast_a_file": {"forecast.npz", "forecast.html"}}
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
-def test_example(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_example(
+    path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.chdir(tmp_path)
     main = runpy.run_path(str(path))["main"]
     main(*([] if path.stem.startswith("04") else [str(SCENE)]))

@@ -21,12 +21,12 @@ void main() {
   gl_Position = projectionMatrix * viewMatrix * place;
 }`;
 
-// lit from above by a sky, from the side by a sun
+// lit from above by a sky, from the side by a sun, and a little from where the reader stands
 export const LIGHT = `
-vec3 lit(vec3 color, vec3 n) {
+vec3 lit(vec3 color, vec3 n, vec3 eye) {
   float sky = 0.5 + 0.5 * n.z;
   float sun = max(dot(n, normalize(vec3(0.5, -0.6, 0.7))), 0.0);
-  return color * (0.42 + 0.36 * sky + 0.42 * sun);
+  return color * (0.38 + 0.3 * sky + 0.3 * sun + 0.22 * max(dot(n, eye), 0.0));
 }`;
 
 const SOLID = `
@@ -36,8 +36,9 @@ varying vec3 toEye;
 ${LIGHT}
 void main() {
   vec3 n = normalize(facing);
-  float rim = pow(1.0 - max(dot(n, normalize(toEye)), 0.0), 3.0);
-  gl_FragColor = vec4(lit(color, n) + 0.12 * rim, 1.0);
+  vec3 eye = normalize(toEye);
+  float rim = pow(1.0 - max(dot(n, eye), 0.0), 3.0);
+  gl_FragColor = vec4(lit(color, n, eye) + 0.12 * rim, 1.0);
   #include <colorspace_fragment>
 }`;
 

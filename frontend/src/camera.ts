@@ -11,8 +11,8 @@ export class Eye {
   private mode: State["camera"] | null = null;
   private free = 1; // the share of the height that nothing covers
 
-  /** `facing`: where the people look at time 0, as an angle in the floor. */
-  constructor(canvas: HTMLCanvasElement, private readonly facing: number, private readonly span: number) {
+  /** `facing`: where the people look, as an angle in the floor; `apart`: how far they get from their middle. */
+  constructor(canvas: HTMLCanvasElement, private readonly facing: number, private readonly apart: number) {
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.maxPolarAngle = Math.PI / 2 - 0.02;
@@ -25,8 +25,9 @@ export class Eye {
     if (mode === this.mode) return;
     this.mode = mode;
     if (mode === "free") return;
-    // narrow windows need more room
-    const room = this.span / Math.tan((this.camera.fov * Math.PI) / 360) / Math.min(this.free, this.camera.aspect);
+    const high = mode === "top" ? this.apart + 0.5 : 1.1 + 0.55 * this.apart;
+    const wide = Math.max(this.apart + 0.55, 1.1);
+    const room = Math.max(high / this.free, wide / this.camera.aspect) / Math.tan((this.camera.fov * Math.PI) / 360);
     const angle = this.facing + (mode === "front" ? 0 : 0.65);
     const lift = { follow: 0.28, front: 0.12, top: Math.PI / 2 - 0.001 }[mode];
     const flat = Math.cos(lift) * room;

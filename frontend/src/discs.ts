@@ -29,12 +29,13 @@ varying vec4 color;
 varying float radius;
 void main() {
   float away = length(within);
+  float grain = fwidth(away) * radius;
   if (away > 1.0) discard;
   #ifdef SOFT
   float strength = (1.0 - away) * (1.0 - away);
   #else
   float edge = (1.0 - away) * radius;
-  float width = WIDTH;
+  float width = max(WIDTH, 1.8 * grain);
   float strength = FILL + (1.0 - FILL) * (1.0 - smoothstep(width * 0.6, width, edge));
   #endif
   gl_FragColor = vec4(color.rgb, color.a * strength);

@@ -39,9 +39,11 @@ async function start(): Promise<void> {
   onThemeChange(() => { stage.paint(); change(false); });
   const box = (id: string) => document.getElementById(id)!.getBoundingClientRect();
   const resize = () => {
-    const narrow = canvas.clientWidth <= 760;
-    const low = narrow && chart ? box("now").top : box("bar").top;
-    stage.resize(narrow ? box("top").bottom : box("now").bottom, canvas.clientHeight - low);
+    // in small windows the clock stands at the bottom
+    const low = Math.min(box("bar").top, box("now").top > canvas.clientHeight / 2 ? box("now").top : Infinity);
+    const beside = canvas.clientWidth > 760;
+    const top = low < box("bar").top && beside ? 0 : box(beside ? "now" : "top").bottom;
+    stage.resize(top, canvas.clientHeight - low);
   };
   new ResizeObserver(() => { resize(); change(true); }).observe(canvas);
   resize();

@@ -11,18 +11,22 @@ const VERTEX = `
 attribute vec3 tint;
 varying vec3 facing;
 varying vec3 color;
+varying vec3 toEye;
 void main() {
   color = tint;
   facing = normalize(mat3(instanceMatrix) * normal);
-  gl_Position = projectionMatrix * viewMatrix * instanceMatrix * vec4(position, 1.0);
+  vec4 place = instanceMatrix * vec4(position, 1.0);
+  toEye = cameraPosition - place.xyz;
+  gl_Position = projectionMatrix * viewMatrix * place;
 }`;
 
 const FRAGMENT = `
 varying vec3 facing;
 varying vec3 color;
+varying vec3 toEye;
 ${LIGHT}
 void main() {
-  gl_FragColor = vec4(lit(color, normalize(facing)), 1.0);
+  gl_FragColor = vec4(lit(color, normalize(facing), normalize(toEye)), 1.0);
   #include <colorspace_fragment>
 }`;
 

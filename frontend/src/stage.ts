@@ -53,8 +53,8 @@ export class Stage {
     this.colors = about.people.map((_, person) => personColor(person));
 
     this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "low-power" });
-    const { middle, reach, span, facing } = this.extent();
-    this.eye = new Eye(canvas, facing, span);
+    const { middle, reach, apart, facing } = this.extent();
+    this.eye = new Eye(canvas, facing, apart);
     this.floor = new Floor(middle, reach);
     this.sticks = new Sticks(people, joints, about.skeleton.bones, THICK);
     this.truthSticks = new Sticks(people, joints, about.skeleton.bones, THIN);
@@ -225,7 +225,7 @@ export class Stage {
   }
 
   /** How far people stand apart and where they face, to choose floor and camera. */
-  private extent(): { middle: [number, number]; reach: number; span: number; facing: number } {
+  private extent(): { middle: [number, number]; reach: number; apart: number; facing: number } {
     const { about } = this.page;
     const { hips } = about.skeleton;
     let [west, east, south, north] = [Infinity, -Infinity, Infinity, -Infinity];
@@ -247,8 +247,8 @@ export class Stage {
     }
     // a couple that faces one another has no common front: look across it
     const facing = Math.hypot(fx, fy) > 0.05 ? Math.atan2(fy, fx) : -Math.PI / 2;
-    if (!Number.isFinite(west)) return { middle: [0, 0], reach: 10, span: 1.3, facing };
+    if (!Number.isFinite(west)) return { middle: [0, 0], reach: 10, apart, facing };
     const reach = Math.max(east - west, north - south) / 2 + 8;
-    return { middle: [(west + east) / 2, (south + north) / 2], reach, span: Math.max(apart + 0.55, 1.2), facing };
+    return { middle: [(west + east) / 2, (south + north) / 2], reach, apart, facing };
   }
 }

@@ -50,7 +50,9 @@ def test_a_mistake_is_one_sentence_and_status_2(arguments: list[str], says: str,
         (ZeroDivisionError("division by zero"), 1, "a fault of motioncast"),
     ],
 )
-def test_exit_status(error: BaseException, status: int, says: str, command, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_exit_status(
+    error: BaseException, status: int, says: str, command, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def fail() -> None:
         raise error
 
@@ -71,9 +73,9 @@ def test_our_faults_show_their_place_when_asked(monkeypatch: pytest.MonkeyPatch)
 def test_as_a_program(walk: Path) -> None:
     def call(*arguments: str) -> subprocess.CompletedProcess[str]:
         program = [sys.executable, "-W", "error", "-m", "motioncast.cli", *arguments]
-        return subprocess.run(program, capture_output=True, text=True, cwd=walk.parent)
+        return subprocess.run(program, capture_output=True, text=True)
 
-    done = call("forecast", "walk.npz", "--model", "zero-velocity")
+    done = call("forecast", str(walk), "--model", "zero-velocity", "--out", str(walk.parent / "next.npz"))
     assert (done.returncode, done.stderr) == (0, "")
-    assert (walk.parent / "walk.forecast.npz").exists()
-    assert call("forecast", "walk.npz", "--model", "zero").returncode == 2
+    assert (walk.parent / "next.npz").exists()
+    assert call("forecast", str(walk), "--model", "zero").returncode == 2

@@ -17,7 +17,11 @@ from motioncast.inference.registry import list_models
 def test_demo(command, tmp_path: Path) -> None:
     done = command("demo")
     assert done.status == 0
-    rows = {line.split()[0]: [int(cell) for cell in line.split()[1:]] for line in done.out.splitlines() if "velocity" in line}
+    rows = {
+        line.split()[0]: [int(cell) for cell in line.split()[1:]]
+        for line in done.out.splitlines()
+        if "velocity" in line
+    }
     assert set(rows) == {"zero-velocity", "constant-velocity", "neck-velocity", "root-velocity-damped"}
     assert all(len(errors) == 5 for errors in rows.values())
     folder = tmp_path / "motioncast-demo"
@@ -99,7 +103,9 @@ def test_a_folder_without_the_data_set(command, tmp_path: Path) -> None:
 
 @pytest.mark.data
 def test_evaluate(command, shared: Path) -> None:
-    answer = command("evaluate", "zero-velocity", "somof-strangers", "--data", shared, "--json").answer("result")
+    answer = command("evaluate", "zero-velocity", "somof-strangers", "--data", shared, "--json").answer(
+        "result"
+    )
     assert answer["rows"][-1]["value"] == pytest.approx(1.0, abs=1e-6)
     assert answer["commit"] == commit()
 

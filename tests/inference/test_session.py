@@ -8,6 +8,7 @@ from motioncast.core.scene import Scene
 from motioncast.core.skeleton import Skeleton
 from motioncast.core.skeletons import MRT15
 from motioncast.errors import InputError, ModelNotFound, SceneError, SkeletonError
+from motioncast.inference.lift import Lift
 from motioncast.inference.registry import DEFAULT_MODEL, list_models, load
 from motioncast.inference.session import GraphForecaster
 from motioncast.testing import walkers
@@ -73,6 +74,20 @@ def test_the_radius_grows_with_time_and_nests(model: GraphForecaster) -> None:
     assert half.shape == (120, 15)
     assert (np.diff(half, axis=0) >= -1e-6).all()
     assert (half <= most).all()
+
+
+def test_radii_of_a_horizon_below_a_second_go_on(model: GraphForecaster) -> None:
+    table = np.linspace(0.1, 1.4, 14)[:, None].repeat(15, 1).tolist()
+    short = replace(model, card=replace(model.card, horizon=14, radius={"levels": {"0.5": table}}))
+    radius = short.radius(Lift.between(MRT15, MRT15), walkers(), 28)["0.5"]
+    np.testing.assert_allclose(radius[[0, 13, 27], 0], [0.1, 1.4, 2.8], rtol=1e-5)
+
+
+@pytest.mark.parametrize("horizon_s", [0.0, -1.0, float("nan"), float("inf")])
+@pytest.mark.parametrize("name", [DEFAULT_MODEL, "zero-velocity"])
+def test_a_horizon_that_is_no_time_ahead_is_refused(name: str, horizon_s: float) -> None:
+    with pytest.raises(InputError, match="positive number of seconds"):
+        load(name).forecast(walkers(), horizon_s=horizon_s)
 
 
 def test_without_rigid_bones_the_graph_speaks_for_itself(model: GraphForecaster) -> None:

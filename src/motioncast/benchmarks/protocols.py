@@ -48,7 +48,7 @@ class Protocol:
     def hash(self, windows: Windows) -> str:
         """A short hash of the protocol and of its windows (positions at 0.1 mm)."""
         digest = hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode())
-        digest.update(np.round(windows.positions * 1e4).astype(np.int32).tobytes())
+        digest.update(np.round(windows.positions * 1e4).astype("<i4").tobytes())
         digest.update(windows.observed.tobytes())
         return digest.hexdigest()[:16]
 
@@ -114,3 +114,15 @@ def windows_of(name: str, data: Path, split: str = "test") -> tuple[Protocol, Wi
         raise InputError(f'there is no benchmark "{name}"; use one of {", ".join(BENCHMARKS)}')
     protocol, builder = BENCHMARKS[name]
     return protocol, builder(data, protocol, split)
+
+
+def manifest(windows: Windows) -> str:
+    """A table of windows: takes, start of the first one, and a checksum of the positions at 0.1 mm.
+
+    Whoever builds the windows from his own copy of the data can tell that they are the same.
+    """
+    lines = ["window,takes,start,sha256"]
+    for index, (take, start) in enumerate(zip(windows.takes, windows.starts, strict=True)):
+        tenths_mm = np.round(windows.positions[index] * 1e4).astype("<i4")
+        lines.append(f"{index},{take},{start},{hashlib.sha256(tenths_mm.tobytes()).hexdigest()[:16]}")
+    return "\n".join(lines) + "\n"

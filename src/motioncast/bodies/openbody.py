@@ -20,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from motioncast.core.rotation import (
+    IDENTITY,
     between,
     conjugate,
     from_axis_angle,
@@ -35,10 +36,10 @@ from motioncast.core.skeletons import SOMOF13
 TWIST_STEP = 0.35
 """Largest change of a limb's twist from frame to frame, in radians."""
 
-MOST_WRIST = 1.2
-"""A hand bows no further than this from the forearm, in radians; captures of hands have wild frames."""
+MOST_BOW = 1.2
+"""Hands and toes bow no further than this, in radians; captures of hands have wild frames."""
 
-LEFT, BACK, UP = np.eye(3)
+LEFT, _, UP = np.eye(3)
 """Axes of the body at rest."""
 
 
@@ -139,7 +140,7 @@ def bend(positions: np.ndarray, skeleton: Skeleton) -> Bent:
         for place, group in zip(SOMOF13.landmarks, SOMOF13.map_from(skeleton), strict=True)
     } | {
         place: points[:, :, index]
-        for place in ("pelvis", "lower_spine", "middle_spine", "upper_spine", "neck_base", "head", "left_ear",
+        for place in ("pelvis", "lower_spine", "middle_spine", "upper_spine", "neck_base", "upper_neck", "head", "left_ear",
                       "right_ear", "left_foot", "right_foot", "left_toe", "right_toe", "left_hand", "right_hand",
                       "left_fingers", "right_fingers")
         if (index := skeleton.find(place)) is not None
@@ -174,7 +175,7 @@ class _Pose:
     def __init__(self, body: Body, joints: dict[str, np.ndarray], shape: tuple[int, ...]) -> None:
         self.body = body
         self.joints = joints
-        self.rotations = np.tile([1.0, 0, 0, 0], (*shape, len(body.bones), 1))
+        self.rotations = np.tile(IDENTITY, (*shape, len(body.bones), 1))
         self.heads = np.zeros((*shape, len(body.bones), 3))
         self.size = self._size()
         self.scales = np.tile(self.size[:, None, None], (1, len(body.bones), 2))
@@ -254,10 +255,7 @@ def _place_arm(pose: _Pose, side: str) -> None:
         pose.put(f"hand_{letter}", wrist, forearm)
     else:
         lower = rotate(forearm, pose.body.axes[pose.body.bones.index(f"lowerarm_{letter}")])
-        bow = to_axis_angle(between(lower, tip - wrist))
-        angle = np.linalg.norm(bow, axis=-1, keepdims=True)
-        swing = from_axis_angle(bow * np.minimum(1, MOST_WRIST / np.maximum(angle, 1e-9)))
-        pose.put(f"hand_{letter}", wrist, multiply(swing, forearm))
+        pose.put(f"hand_{letter}", wrist, multiply(_bow(between(lower, tip - wrist)), forearm))
 
 
 def _place_leg(pose: _Pose, side: str) -> None:
@@ -269,16 +267,17 @@ def _place_leg(pose: _Pose, side: str) -> None:
     slope = np.full(ankle.shape[1], np.arctan2(-rest[2], np.hypot(rest[0], rest[1])))
     raised = ankle[..., 2] - np.percentile(ankle[..., 2], 10, axis=0)
     down = np.clip(1 - raised / 0.2, 0, 1)[..., None]
+    sideways = _unit(rotate(calf, LEFT) * (1, 1, 0))
     ball = next((pose.joints[f"{side}_{name}"] for name in ("foot", "toe") if f"{side}_{name}" in pose.joints), None)
     if ball is None:
-        ahead = _unit(rotate(calf, -BACK) * (1, 1, 0))
-        flat = np.cos(slope)[:, None] * ahead - np.sin(slope)[:, None] * UP
-        direction = _unit(down * flat + (1 - down) * rotate(calf, rest))
+        flat = np.cos(slope)[:, None] * np.cross(sideways, UP) - np.sin(slope)[:, None] * UP
+        hanging = rotate(calf, _unit(rest))
+        direction = rotate(slerp(IDENTITY, _bow(between(hanging, flat)), down[..., 0]), hanging)
     else:
         direction = _unit(ball - ankle)
         slopes = np.arcsin(np.clip(-direction[..., 2], -1, 1))
         slope = np.array([np.median(column[low]) for column, low in zip(slopes.T, (raised < 0.03).T, strict=True)])
-    side_on = down * _unit(np.cross(UP, direction)) + (1 - down) * rotate(calf, LEFT)
+    side_on = down * sideways + (1 - down) * rotate(calf, LEFT)
     heading = _unit(rest * (1, 1, 0))
     neutral = np.cos(slope)[:, None] * heading - np.sin(slope)[:, None] * UP
     foot = multiply(
@@ -287,7 +286,7 @@ def _place_leg(pose: _Pose, side: str) -> None:
     pose.put(f"foot_{letter}", ankle, foot)
     toes = pose.carried(f"foot_{letter}", pose.body.head(f"ball_{letter}"))
     lifted = toes[..., 2] - np.percentile(toes[..., 2], 10, axis=0)
-    level = multiply(between(rotate(foot, UP), np.broadcast_to(UP, toes.shape)), foot)
+    level = multiply(_bow(between(rotate(foot, UP), np.broadcast_to(UP, toes.shape))), foot)
     pose.put(f"ball_{letter}", toes, slerp(level, foot, np.clip(lifted / 0.06, 0, 1)))
 
 
@@ -344,16 +343,25 @@ def _place_head(pose: _Pose) -> None:
     """Neck and head; what a person's head does most of the time counts as looking straight ahead."""
     body, chest = pose.body, pose.rotation("spine_03")
     root = pose.carried("spine_03", body.head("neck_01"))
-    turn = np.broadcast_to([1.0, 0, 0, 0], chest.shape)
-    if "head" in pose.joints:
-        way = pose.joints["head"] - root
+    turn = np.broadcast_to(IDENTITY, chest.shape)
+    skull = pose.joints.get("head", pose.joints.get("upper_neck"))
+    if skull is not None:
+        way = skull - root
         usual = np.median(rotate(conjugate(chest), _unit(way)), axis=0)
         turn = between(rotate(chest, usual), way)
-    pose.put("neck_01", root, multiply(slerp(np.broadcast_to([1.0, 0, 0, 0], turn.shape), turn, 0.6), chest))
+    pose.put("neck_01", root, multiply(slerp(IDENTITY, turn, 0.6), chest))
     rotation = multiply(turn, chest)
     if "left_ear" in pose.joints and "right_ear" in pose.joints:
         rotation = _frame(pose.joints["left_ear"] - pose.joints["right_ear"], rotate(rotation, UP))
     pose.put("head", pose.carried("neck_01", body.head("head")), rotation)
+
+
+def _bow(swing: np.ndarray) -> np.ndarray:
+    """The same swing, by ``MOST_BOW`` at most; it fades out towards half a turn, whose axis is anyone's guess."""
+    bow = to_axis_angle(swing)
+    angle = np.linalg.norm(bow, axis=-1, keepdims=True)
+    most = MOST_BOW * np.clip((np.pi - angle) / (np.pi - 2), 0, 1)
+    return from_axis_angle(bow * np.minimum(1, most / np.maximum(angle, 1e-9)))
 
 
 def _frame(left: np.ndarray, up: np.ndarray, lead: int = 0) -> np.ndarray:

@@ -82,6 +82,7 @@ def run(arguments: Sequence[str]) -> int:
             raise
         what = f"{type(error).__name__}: {error}".replace("\n", " ")
         return complain(
-            f"a fault of motioncast, not of yours ({what}); set MOTIONCAST_TRACEBACK=1 to see where, and report it", 1
+            f"a fault of motioncast, not of yours ({what}); report it with what MOTIONCAST_TRACEBACK=1 shows",
+            1,
         )
     return 0

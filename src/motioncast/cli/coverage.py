@@ -27,4 +27,7 @@ def coverage(model: str, benchmark: str, /, *, data: Path, json: bool = False) -
     levels = list(next(iter(shares.values())))
     rows = [(take, *(f"{100 * share[level]:.0f} %" for level in levels)) for take, share in shares.items()]
     mean = [f"{100 * np.mean([share[level] for share in shares.values()]):.0f} %" for level in levels]
-    say.table(("take", *(f"meant {100 * float(level):.0f} %" for level in levels)), [*rows, ("mean of takes", *mean)])
+    say.table(
+        ("take", *(f"meant {100 * float(level):.0f} %" for level in levels)),
+        [*rows, ("mean of takes", *mean)],
+    )

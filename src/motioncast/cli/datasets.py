@@ -28,7 +28,7 @@ DATASETS = (
     ),
     DataSet(
         "extra",
-        "99 clips of one person and a ball, on another skeleton; further CMU takes beside them are read with cmu",
+        "99 clips of one person and a ball, on another skeleton; CMU takes beside them are read with cmu",
         "Apache-2.0 (BallPlay-M of SkillMimic)",
         "github.com/wyhuai/SkillMimic, skillmimic/data/motions",
     ),

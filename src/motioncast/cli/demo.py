@@ -35,8 +35,8 @@ def demo(*, model: str = "somoformer-fast", out: Path = Path("motioncast-demo"),
     note(answer.warnings)
     curves = {name: error_curve(guess, truth) for name, guess in answers.items()}
 
-    print(f"A couple dances salsa. {history.duration_s:.1f} s were seen, {HORIZON_S:g} s are forecast by {model},")
-    print("which was never trained on this take. Against what really happened, mean of both people's joints:\n")
+    print(f"A couple dances salsa. {model}, never trained on this take, saw {history.duration_s:.1f} s and")
+    print(f"forecasts {HORIZON_S:g} s. Against what really happened, mean of both people's joints:\n")
     error_table(curves, answer.fps)
 
     make_folder(out)

@@ -37,6 +37,7 @@ def forecast(
         out: File to write; its suffix tells the format: npz, html, bvh, glb, csv, trc.
         view: Write the interactive page and open it in the browser.
         json: Print the forecast as one JSON object.
+        reading: How to read files whose header lies.
     """
     if not scenes:
         raise InputError("no motion file came; give one scene file, or one motion file a person")

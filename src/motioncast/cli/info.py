@@ -16,12 +16,14 @@ def info(*files: Path, reading: Reading = AS_THE_FILE_SAYS) -> None:
 
     Args:
         files: One scene file, or one motion file a person.
+        reading: How to read files whose header lies.
     """
     from motioncast.formats.units import stature
 
     scene = read_scene(files, reading)
     print(f"{scene.source}")
-    print(f"{scene.frames} frames at {scene.fps:g} a second, {scene.duration_s:.2f} s; skeleton {scene.skeleton.label}\n")
+    print(f"{scene.frames} frames at {scene.fps:g} a second, {scene.duration_s:.2f} s")
+    print(f"skeleton {scene.skeleton.label}, {len(scene.skeleton)} joints\n")
     rows = []
     for row, person in enumerate(scene.people):
         alone = scene.select((person,))
@@ -48,7 +50,7 @@ def info(*files: Path, reading: Reading = AS_THE_FILE_SAYS) -> None:
 
 
 def bone_lengths(scene: Scene) -> np.ndarray:
-    """Median distance of each joint from its parent over frames and people, ``(joints,)`` metres; NaN if unknown."""
+    """Median distance of each joint from its parent, ``(joints,)`` metres; NaN if unknown."""
     lengths = np.full(len(scene.skeleton), np.nan)
     for joint, parent in scene.skeleton.bones:
         seen = scene.observed[:, :, joint] & scene.observed[:, :, parent]

@@ -19,8 +19,12 @@ from motioncast.errors import InputError
 class Reading:
     """How to read a file whose header lies or says nothing."""
 
-    up: Annotated[str | None, Parameter(help="Axis that points up: x, y, z, or one with a minus for down.")] = None
-    unit: Annotated[str | None, Parameter(help="Unit of length: m, cm, mm, inch, cmu, or a number of metres.")] = None
+    up: Annotated[
+        str | None, Parameter(help="Axis that points up: x, y, z, or one with a minus for down.")
+    ] = None
+    unit: Annotated[
+        str | None, Parameter(help="Unit of length: m, cm, mm, inch, cmu, or a number of metres.")
+    ] = None
     fps: Annotated[float | None, Parameter(help="Frames a second.")] = None
     map: Annotated[
         Path | None, Parameter(help='File of lines "joint = landmark" for joints that are not recognised.')
@@ -49,7 +53,7 @@ def moment(scene: Scene, seconds: float) -> int:
     frames = round(seconds * scene.fps)
     if not 1 <= frames <= scene.frames:
         raise InputError(
-            f"--at {seconds:g} lies outside the motion, which lasts {scene.duration_s:.2f} s; give a moment within it"
+            f"--at {seconds:g} lies outside the motion of {scene.duration_s:.2f} s; give a moment within it"
         )
     return frames
 

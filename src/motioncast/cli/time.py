@@ -49,17 +49,29 @@ def time(
     timings = [measure(one_pass(model, count, threads), count, rounds) for count in counts]
     if json:
         (timing,) = timings
-        emit({
-            "schema": "motioncast.time/1", "median_ms": timing.median_ms, "q1_ms": timing.q1_ms, "q3_ms": timing.q3_ms,
-            "threads": threads, "people": timing.people, "objects": 0, "peak_memory_mb": peak_memory_mb(),
-        })  # fmt: skip
+        emit(
+            {
+                "schema": "motioncast.time/1",
+                "median_ms": timing.median_ms,
+                "q1_ms": timing.q1_ms,
+                "q3_ms": timing.q3_ms,
+                "threads": threads,
+                "people": timing.people,
+                "objects": 0,
+                "peak_memory_mb": peak_memory_mb(),
+            }
+        )
         return
     rows = [
-        (timing.people, f"{timing.median_ms:.2f}", f"{timing.q1_ms:.2f}", f"{timing.q3_ms:.2f}") for timing in timings
+        (timing.people, f"{timing.median_ms:.2f}", f"{timing.q1_ms:.2f}", f"{timing.q3_ms:.2f}")
+        for timing in timings
     ]
     table(("people", "median ms", "1st quartile", "3rd quartile"), rows)
     memory = peak_memory_mb()
-    print(f"\n{model}, {threads} thread(s), {rounds} passes each" + (f"; at most {memory:.0f} MB" if memory else ""))
+    print(
+        f"\n{model}, {threads} thread(s), {rounds} passes each"
+        + (f"; at most {memory:.0f} MB" if memory else "")
+    )
 
 
 def one_pass(model: str, people: int, threads: int) -> Callable[[], object]:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Protocol
+
+import numpy as np
 
 from motioncast.core.card import ModelCard
 from motioncast.core.forecast import Forecast
 from motioncast.core.scene import Scene
+from motioncast.core.skeleton import Skeleton
 
 Progress = Callable[[float], None]
 """Receives the share that is done, 0 to 1."""
@@ -42,4 +45,20 @@ class Forecaster(Protocol):
         Raises:
             SceneError: If the scene cannot be forecast.
         """
+        ...
+
+
+class Live(Protocol):
+    """A forecast that follows a tracker."""
+
+    def push(self, frame: Mapping[str, np.ndarray], time_s: float | None = None) -> Forecast | None:
+        """Takes a frame, person id -> joints ``(joints, 3)``, and forecasts from the newest one."""
+        ...
+
+
+class LiveForecaster(Forecaster, Protocol):
+    """A forecaster that can follow a tracker; those that ship all can."""
+
+    def stream(self, fps: float, skeleton: Skeleton | None = None, horizon_s: float | None = None) -> Live:
+        """A live forecast of a tracker of that rate and skeleton."""
         ...

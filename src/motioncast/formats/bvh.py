@@ -29,7 +29,7 @@ from motioncast.core.skeleton import Skeleton
 from motioncast.core.skeletons import recognise
 from motioncast.errors import FormatError, SceneError
 from motioncast.formats import units
-from motioncast.formats.files import atomic_write, read_text
+from motioncast.formats.files import atomic_write, person_paths, read_text
 
 suffixes = (".bvh",)
 
@@ -361,20 +361,14 @@ def write(scene: Scene, path: str | Path) -> tuple[Path, ...]:
         SceneError: If the scene has no rotations (``core.kinematics.fit_rotations`` finds them).
         OutputError: If a file cannot be written.
     """
-    path = Path(path)
     if scene.rotations is None or scene.offsets is None:
         raise SceneError("the scene has joint positions only; fit rotations before it is written as BVH")
-    texts: dict[Path, str] = {}
-    for person, name in enumerate(scene.people):
-        safe = re.sub(r"[^\w.-]+", "_", name).strip("._") or f"person_{person + 1}"
-        target = path if len(scene.people) == 1 else path.with_name(f"{path.stem}_{safe}{path.suffix}")
-        if target in texts:
-            target = path.with_name(f"{path.stem}_{safe}_{person + 1}{path.suffix}")
-        texts[target] = _text(scene, person)
-    for target, text in texts.items():
+    targets = person_paths(path, scene.people)
+    texts = [_text(scene, person) for person in range(len(targets))]
+    for target, text in zip(targets, texts, strict=True):
         with atomic_write(target) as temporary:
             temporary.write_text(text, encoding="utf-8", newline="\n")
-    return tuple(texts)
+    return targets
 
 
 def _text(scene: Scene, person: int) -> str:

@@ -6,37 +6,38 @@
     time_s,person,pelvis_x,pelvis_y,pelvis_z,left_hip_x,...
     0.0,dancer,0.12,0.03,0.95,...
 
-An empty cell means not observed, and so does a missing row. Comment lines are optional: the frame rate then
-follows from the times, up axis and unit from the body. ``person`` may be left out where there is one. Forecasts
-have the columns ``sample`` and ``weight`` in front, and times count from the last observed frame.
+An empty cell (or NA, or NaN) means not observed, and so does a missing row. Comment lines are optional: the frame
+rate then follows from the times, up axis and unit from the body. ``person`` may be left out where there is one.
+Forecasts have the columns ``sample`` and ``weight`` in front, and their times count from the last observed frame.
 """
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
 
 from motioncast.core.forecast import Forecast
 from motioncast.core.scene import Scene
-from motioncast.core.skeletons import grow
 from motioncast.errors import FormatError
-from motioncast.formats import units
 from motioncast.formats.files import atomic_write, read_text
+from motioncast.formats.points import scene_of_points
 
 suffixes = (".csv",)
 
-AXES = ("x", "y", "z")
-MAX_FRAMES = 10_000_000
-"""Most frames that the times of a table may span: a wrong time must not fill the memory."""
+MAX_CELLS = 100_000_000
+"""Most numbers of one scene: frames times people times joints times 3."""
+
+_BLANK = {"", "na", "nan"}
 
 
 def sniff(head: bytes) -> bool:
     """Whether a file that begins so is such a table."""
     lines = head.decode("utf-8-sig", "ignore").splitlines()
-    return any("time_s" in line and "," in line for line in lines if not line.startswith("#"))
+    header = next((line for line in lines if line.strip() and not line.startswith("#")), "")
+    return "time_s" in [name.strip().strip('"') for name in header.split(",")]
 
 
 def read(
@@ -61,161 +62,186 @@ def read(
         SceneError: If no unit makes a person of the bodies.
     """
     lines = read_text(path).split("\n")
-    stated = _comments(lines)
-    first = next((index for index, line in enumerate(lines) if line.strip() and not line.startswith("#")), None)
-    if first is None:
-        raise FormatError(path, "is empty; expected a header time_s,person,JOINT_x,JOINT_y,JOINT_z,...")
-    header = [name.strip() for name in next(csv.reader([lines[first]]))]
-    joints = _joints(header, path, first + 1)
-    times, people, values = _rows(lines, first, header, joints, path)
-    rate = fps or _number(stated.get("fps", ""), path) or _rate(times, path)
-    place = (times - times.min()) * rate
-    frames = np.rint(place).astype(np.int64)
-    if np.abs(place - frames).max() > 0.25:
-        raise FormatError(path, f"the times do not lie on {rate:g} frames a second; resample them or give --fps")
-    count, ids = int(frames.max()) + 1, tuple(dict.fromkeys(people))
-    if count * len(ids) > MAX_FRAMES:
-        raise FormatError(path, f"the times span {count} frames, more than are read; check time_s and --fps")
-    columns = np.array([ids.index(person) for person in people])
-    skeleton = grow(joints, Path(path).stem, named)
-    order = [joints.index(name) for name in skeleton.names]
-    positions = np.full((count, len(ids), len(joints), 3), np.nan)
-    positions[frames, columns] = values[:, order]
-    observed = np.isfinite(positions).all(-1)
-    positions = np.where(observed[..., None], positions, 0)
-    world = units.settle(
-        path, positions, observed, skeleton,
-        up=up or stated.get("up"), unit=unit or stated.get("unit"), usual_up="z",
+    start = next((index for index, line in enumerate(lines) if line.strip() and not line.startswith("#")), None)
+    if start is None:
+        raise FormatError(path, "has no header; expected time_s,person,JOINT_x,JOINT_y,JOINT_z,...")
+    stated = _comments(lines[:start])
+    header = [name.strip() for name in next(_cells(lines[start : start + 1], path, start + 1))[1]]
+    joints = _joints(header, path, start + 1)
+    times, people, values = _rows(lines, start, header, path)
+    frames, rate = _frames(times, fps or _stated_rate(stated, path), path)
+    ids = {person: row for row, person in enumerate(dict.fromkeys(people))}
+    count = int(frames.max()) + 1
+    if count * len(ids) * len(joints) * 3 > MAX_CELLS:
+        raise FormatError(path, f"its times span {count} frames of {len(ids)} people, more than are read; check time_s")
+    rows = np.array([ids[person] for person in people])
+    place = frames * len(ids) + rows
+    if len(np.unique(place)) != len(place):
+        twice = int(np.flatnonzero(np.bincount(place)[place] > 1)[0])
+        raise FormatError(path, f'person "{people[twice]}" has two rows at {times[twice]:g} s; give one a frame')
+    points = np.full((count, len(ids), len(joints), 3), np.nan)
+    points[frames, rows] = values.reshape(len(values), -1, 3)
+    return scene_of_points(
+        path, joints, list(ids), points, rate,
+        up=up or stated.get("up"), unit=unit or stated.get("unit"), usual_up="z", named=named,
     )  # fmt: skip
-    return Scene(world.points(positions), skeleton, rate, observed, ids, source=str(path), remarks=world.remarks)
-
-
-def write(scene: Scene, path: str | Path) -> tuple[Path, ...]:
-    """Writes a scene as a table: metres, z up.
-
-    Raises:
-        OutputError: If it cannot be written.
-    """
-    times = np.arange(scene.frames) / scene.fps
-    rows = (
-        [f"{times[frame]:.6g}", person, *_cells(scene.positions[frame, column], scene.observed[frame, column])]
-        for frame in range(scene.frames)
-        for column, person in enumerate(scene.people)
-        if scene.observed[frame, column].any()
-    )
-    return _write(path, scene.fps, ["time_s", "person", *_columns(scene.skeleton.names)], rows)
-
-
-def write_forecast(forecast: Forecast, path: str | Path) -> tuple[Path, ...]:
-    """Writes all samples of a forecast as a table; times count from the last observed frame.
-
-    Raises:
-        OutputError: If it cannot be written.
-    """
-    seen = np.ones(len(forecast.skeleton), bool)
-    rows = (
-        [str(number), f"{forecast.weights[number]:.6g}", f"{time:.6g}", person, *_cells(sample[frame, column], seen)]
-        for number, sample in enumerate(forecast.samples)
-        for frame, time in enumerate(forecast.times_s)
-        for column, person in enumerate(forecast.people)
-    )
-    header = ["sample", "weight", "time_s", "person", *_columns(forecast.skeleton.names)]
-    return _write(path, forecast.fps, header, rows)
-
-
-def _write(path: str | Path, fps: float, header: list[str], rows: Iterable[list[str]]) -> tuple[Path, ...]:
-    with atomic_write(path) as temporary, temporary.open("w", encoding="utf-8", newline="") as file:
-        file.write(f"# fps: {fps:.10g}\n# up: z\n# unit: m\n")
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(header)
-        writer.writerows(rows)
-    return (Path(path),)
-
-
-def _columns(names: Iterable[str]) -> list[str]:
-    return [f"{name}_{axis}" for name in names for axis in AXES]
-
-
-def _cells(pose: np.ndarray, seen: np.ndarray) -> list[str]:
-    """The cells of one person in one frame, to a hundredth of a millimetre."""
-    return [f"{value:.5f}" if known else "" for joint, known in zip(pose, seen, strict=True) for value in joint]
 
 
 def _comments(lines: list[str]) -> dict[str, str]:
-    """What the comment lines state: ``# fps: 30``."""
-    stated = {}
-    for line in lines:
-        if line.startswith("#") and ":" in line:
-            name, _, value = line[1:].partition(":")
-            stated[name.strip().lower()] = value.strip()
-    return stated
+    """The entries of comment lines such as ``# fps: 30``."""
+    pairs = (line.removeprefix("#").partition(":") for line in lines if line.startswith("#"))
+    return {key.strip().lower(): value.strip() for key, _, value in pairs}
+
+
+def _stated_rate(stated: Mapping[str, str], path: str | Path) -> float | None:
+    if "fps" not in stated:
+        return None
+    rate = _number(stated["fps"], path, 1)
+    if not 1e-3 <= rate <= 1e5:
+        raise FormatError(path, f'the comment "fps: {stated["fps"]}" is no frame rate; expected one such as 30')
+    return rate
+
+
+def _cells(lines: list[str], path: str | Path, first: int) -> Iterator[tuple[int, list[str]]]:
+    """Line numbers and cells of the lines that are not blank."""
+    reader = csv.reader(lines, strict=True)
+    try:
+        for cells in reader:
+            if any(cells):
+                yield first + reader.line_num - 1, cells
+    except csv.Error as error:
+        raise FormatError(path, f"is not a table of comma-separated values ({error})", first + reader.line_num) from None
 
 
 def _joints(header: list[str], path: str | Path, line: int) -> list[str]:
-    """Joint names of the columns, each with its three axes side by side."""
-    if "time_s" not in header:
-        raise FormatError(path, f'the header "{",".join(header)[:60]}" has no column time_s', line)
+    """Joint names from the columns; each has its x, y, z side by side."""
     if "sample" in header:
-        raise FormatError(path, "holds a forecast, not a scene; forecast files are read as .npz", line)
+        raise FormatError(path, "holds a forecast, not a scene; load the forecast's .npz file", line)
+    if "time_s" not in header:
+        raise FormatError(path, 'has no column "time_s"; expected time_s,person,JOINT_x,JOINT_y,JOINT_z,...', line)
     columns = [name for name in header if name not in ("time_s", "person")]
     joints = [name[:-2] for name in columns[::3]]
-    if columns != _columns(joints) or not joints:
-        raise FormatError(path, "expected three columns a joint, JOINT_x, JOINT_y and JOINT_z, side by side", line)
-    if len(set(joints)) != len(joints):
-        raise FormatError(path, "two joints have one name", line)
+    wanted = [f"{joint}_{axis}" for joint in joints for axis in "xyz"]
+    if not joints or columns != wanted or header.count("time_s") + header.count("person") + len(columns) > len(header):
+        odd = next((have for have, want in zip(columns, wanted, strict=False) if have != want), "the end")
+        raise FormatError(path, f'a joint needs the columns JOINT_x,JOINT_y,JOINT_z; "{odd}" breaks this order', line)
     return joints
 
 
 def _rows(
-    lines: list[str], first: int, header: list[str], joints: list[str], path: str | Path
+    lines: list[str], start: int, header: list[str], path: str | Path
 ) -> tuple[np.ndarray, list[str], np.ndarray]:
-    """Times ``(rows,)``, people, and positions ``(rows, joints, 3)`` with NaN for empty cells."""
+    """Times ``(rows,)``, the person of each row, and the coordinates ``(rows, columns)`` with NaN for blanks."""
     time, person = header.index("time_s"), header.index("person") if "person" in header else None
-    cells = [column for column in range(len(header)) if column not in (time, person)]
+    columns = [index for index in range(len(header)) if index not in (time, person)]
     times, people, values = [], [], []
-    seen: set[tuple[str, str]] = set()
-    for number, line in enumerate(lines[first + 1 :], first + 2):
-        if not line.strip() or line.startswith("#"):
-            continue
+    for line, cells in _cells(lines[start + 1 :], path, start + 2):
+        if len(cells) != len(header):
+            raise FormatError(path, f"{len(cells)} cells; the header has {len(header)}", line)
+        times.append(_number(cells[time], path, line))
+        people.append(cells[person].strip() if person is not None else Path(path).stem)
         try:
-            row = next(csv.reader([line], strict=True))
-        except (csv.Error, StopIteration) as error:
-            raise FormatError(path, f"is no row of a table ({error})", number) from None
-        if len(row) != len(header):
-            raise FormatError(path, f"{len(row)} cells; the header has {len(header)}", number)
-        who = row[person].strip() if person is not None else Path(path).stem
-        if (row[time], who) in seen:
-            raise FormatError(path, f'"{who}" has a second row at {row[time]} s', number)
-        seen.add((row[time], who))
-        try:
-            times.append(float(row[time]))
-            values.append([float(row[cell]) if row[cell].strip() else np.nan for cell in cells])
-        except ValueError as error:
-            raise FormatError(path, f"{error}; expected a number", number) from None
-        if not np.isfinite(times[-1]):
-            raise FormatError(path, f'time "{row[time]}" is not a finite number', number)
-        people.append(who)
+            row = [float(cells[index] or "nan") for index in columns]
+        except ValueError:
+            row = [_number(cells[index], path, line, blank=True) for index in columns]
+        values.append(row)
     if not times:
-        raise FormatError(path, "has a header and no rows")
-    return np.array(times), people, np.array(values).reshape(len(times), len(joints), 3)
+        raise FormatError(path, "has a header but no rows", start + 1)
+    array = np.array(values)
+    if np.isinf(array).any():
+        raise FormatError(path, "holds an infinite number; leave cells blank where a joint was not observed")
+    return np.array(times), people, array
 
 
-def _number(text: str, path: str | Path) -> float | None:
-    if not text:
-        return None
+def _number(text: str, path: str | Path, line: int, blank: bool = False) -> float:
+    if blank and text.strip().lower() in _BLANK:
+        return np.nan
     try:
         value = float(text)
     except ValueError:
-        value = 0.0
-    if not 0 < value < 1e6:
-        raise FormatError(path, f'states "{text}" frames a second; expected a positive number')
+        value = np.inf
+    if not np.isfinite(value):
+        raise FormatError(path, f'"{text[:40]}" where a number with a decimal point was expected', line)
     return value
 
 
-def _rate(times: np.ndarray, path: str | Path) -> float:
-    """Frame rate from the times: a whole number where they lie close to one."""
-    moments = np.unique(times)
-    if len(moments) < 2:
-        raise FormatError(path, "has one frame and states no rate; give it by --fps")
-    rate = 1 / float(np.median(np.diff(moments)))
-    return float(round(rate)) if abs(rate - round(rate)) < 0.02 * rate and round(rate) else rate
+def _frames(times: np.ndarray, fps: float | None, path: str | Path) -> tuple[np.ndarray, float]:
+    """The frame of each row and the frame rate: the given one or that of the times."""
+    since = times - times.min()
+    steps = np.diff(np.unique(since))
+    if fps is None:
+        if not len(steps):
+            raise FormatError(path, 'has one moment only and no frame rate; add the comment "# fps: 30" or give --fps')
+        rough = 1 / float(np.median(steps))
+        rate = float(np.rint(since.max() * rough)) / float(since.max())  # the long span has the smaller error
+        rate = next((nice for nice in (round(rate), round(rate) * 1000 / 1001) if abs(nice - rate) < 1e-4 * rate), rate)
+    else:
+        rate = fps
+    if since.max() * rate > MAX_CELLS:
+        raise FormatError(path, f"its times span {since.max():g} s, more than are read; check the column time_s")
+    frames = np.rint(since * rate).astype(np.int64)
+    if np.abs(since * rate - frames).max() > 0.25:
+        raise FormatError(path, f"its times do not lie on a clock of {rate:g} frames a second; resample them")
+    return frames, float(rate)
+
+
+# --- writing ------------------------------------------------------------------------------------------------
+
+
+def write(scene: Scene, path: str | Path) -> tuple[Path, ...]:
+    """Writes a table of all people; blank where not observed, six decimals (micrometres).
+
+    Raises:
+        OutputError: If the file cannot be written.
+    """
+    lines = [*_head(scene), ",".join(_escaped(["time_s", "person", *_columns(scene)]))]
+    lines += _body(scene.positions, scene.observed, np.arange(scene.frames) / scene.fps, scene.people, "")
+    return _save(lines, path)
+
+
+def write_forecast(forecast: Forecast, path: str | Path) -> tuple[Path, ...]:
+    """Writes a table of all samples of a forecast.
+
+    Raises:
+        OutputError: If the file cannot be written.
+    """
+    columns = ["sample", "weight", "time_s", "person", *_columns(forecast.history)]
+    lines = [*_head(forecast.history), ",".join(_escaped(columns))]
+    for number, (sample, weight) in enumerate(zip(forecast.samples, forecast.weights, strict=True)):
+        everything = np.ones(sample.shape[:3], bool)
+        lines += _body(sample, everything, forecast.times_s, forecast.people, f"{number},{weight:.6g},")
+    return _save(lines, path)
+
+
+def _head(scene: Scene) -> list[str]:
+    return [f"# fps: {scene.fps!r}", "# up: z", "# unit: m"]
+
+
+def _columns(scene: Scene) -> list[str]:
+    return [f"{joint}_{axis}" for joint in scene.skeleton.names for axis in "xyz"]
+
+
+def _escaped(cells: list[str]) -> list[str]:
+    return [f'"{cell.replace(chr(34), chr(34) * 2)}"' if set(cell) & set(',"\n\r') else cell for cell in cells]
+
+
+def _body(
+    positions: np.ndarray, observed: np.ndarray, times_s: np.ndarray, people: tuple[str, ...], prefix: str
+) -> Iterator[str]:
+    row = ",".join(["%.6f"] * positions.shape[2] * 3)
+    names = _escaped(list(people))
+    for frame, time in enumerate(times_s.tolist()):
+        for person, name in enumerate(names):
+            seen = observed[frame, person]
+            if seen.all():
+                cells = row % tuple((positions[frame, person] + 0.0).ravel().tolist())
+            else:
+                points = zip(seen.tolist(), positions[frame, person].tolist(), strict=True)
+                cells = ",".join("%.6f,%.6f,%.6f" % tuple(point) if there else ",," for there, point in points)
+            yield f"{prefix}{time:.6f},{name},{cells}"
+
+
+def _save(lines: list[str], path: str | Path) -> tuple[Path, ...]:
+    with atomic_write(path) as temporary:
+        temporary.write_text("\n".join(lines) + "\n", encoding="utf-8", newline="\n")
+    return (Path(path),)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import secrets
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -67,6 +68,26 @@ def _remove(temporary: Path) -> None:
 
 def _reason(error: OSError) -> str:
     return "the disk is full" if error.errno == errno.ENOSPC else (error.strerror or str(error)).lower()
+
+
+def person_paths(path: str | Path, people: Sequence[str]) -> tuple[Path, ...]:
+    """Where each person goes in a format of one person a file: ``path``, or with ids in the names if they are several.
+
+    Example:
+        >>> [target.name for target in person_paths("out.bvh", ["Ann", "../Bob"])]
+        ['out_Ann.bvh', 'out_Bob.bvh']
+    """
+    path = Path(path)
+    if len(people) == 1:
+        return (path,)
+    targets: list[Path] = []
+    for number, person in enumerate(people, 1):
+        safe = re.sub(r"[^\w-]+", "_", person).strip("_") or f"person_{number}"
+        target = path.with_name(f"{path.stem}_{safe}{path.suffix}")
+        taken = {other.name.lower() for other in targets}  # some file systems do not tell a from A
+        clash = target.name.lower() in taken
+        targets.append(path.with_name(f"{path.stem}_{safe}_{number}{path.suffix}") if clash else target)
+    return tuple(targets)
 
 
 def read_bytes(path: str | Path, limit: int | None = None) -> bytes:

@@ -16,8 +16,11 @@ from motioncast.core.forecast import Forecast
 from motioncast.core.forecaster import Progress
 from motioncast.core.resample import bridge, sample
 from motioncast.core.scene import Scene
-from motioncast.core.skeleton import STAND_INS
-from motioncast.errors import SceneError
+from motioncast.core.skeleton import STAND_INS, Skeleton
+from motioncast.core.skeletons import MRT15
+from motioncast.errors import InputError, SceneError
+from motioncast.inference.lift import needed_frames
+from motioncast.inference.stream import Stream
 
 FPS = 15.0
 MEMORY = 8
@@ -104,11 +107,16 @@ class SimpleGuess:
         progress: Progress | None = None,
     ) -> Forecast:
         """See :class:`motioncast.core.forecaster.Forecaster`."""
-        frames = max(1, round((horizon_s or HORIZON / FPS) * scene.fps))
+        frames = frames_ahead(self.card, scene, horizon_s)
         asked = scene.select(present(scene))
         moved = guess(RULES[self.name], asked, frames)
         warnings = one_future(self.name, samples)
         return Forecast(moved[None], scene, asked.people, self.card, seed=seed, warnings=warnings)
+
+    def stream(self, fps: float, skeleton: Skeleton | None = None, horizon_s: float | None = None) -> Stream:
+        """See :class:`motioncast.core.forecaster.LiveForecaster`; default joints: the 15 of ``MRT15``."""
+        memory = needed_frames(MEMORY, FPS, fps)
+        return Stream(lambda scene: self.forecast(scene, horizon_s=horizon_s), skeleton or MRT15, fps, memory)
 
 
 def guess(rule: Rule, scene: Scene, frames: int) -> np.ndarray:
@@ -139,6 +147,19 @@ def present(scene: Scene) -> list[str]:
         last = f"the last one with somebody is {ever[-1]} of {scene.frames}" if len(ever) else "nor in any other"
         raise SceneError(f"nobody is observed in the last frame ({last}); cut the motion where people are still seen")
     return [person for person, there in zip(scene.people, seen, strict=True) if there]
+
+
+def frames_ahead(card: ModelCard, scene: Scene, horizon_s: float | None) -> int:
+    """Frames of the scene's rate that a horizon spans, at least one; the card's own horizon by default.
+
+    Raises:
+        InputError: If the horizon is not a positive number of seconds.
+    """
+    if horizon_s is None:
+        horizon_s = card.horizon / card.fps
+    if not (np.isfinite(horizon_s) and horizon_s > 0):
+        raise InputError(f"the horizon is {horizon_s} s; expected a positive number of seconds, such as 3")
+    return max(1, round(horizon_s * scene.fps))
 
 
 def one_future(name: str, samples: int) -> tuple[str, ...]:

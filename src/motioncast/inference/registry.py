@@ -10,7 +10,7 @@ from importlib import metadata, resources
 from pathlib import Path
 
 from motioncast.core.card import ModelCard
-from motioncast.core.forecaster import Forecaster
+from motioncast.core.forecaster import LiveForecaster
 from motioncast.errors import InputError, ModelNotFound
 from motioncast.inference.baselines import RULES, SimpleGuess
 
@@ -20,7 +20,7 @@ GROUP = "motioncast.models"
 """Entry points of this group name functions that return a forecaster."""
 
 
-def load(name: str | Path) -> Forecaster:
+def load(name: str | Path) -> LiveForecaster:
     """A model by name or path.
 
     Args:
@@ -84,7 +84,7 @@ def _card(weights: Path) -> ModelCard:
     return ModelCard.from_json(path.read_text(encoding="utf-8"))
 
 
-def _graph(weights: Path) -> Forecaster:
+def _graph(weights: Path) -> LiveForecaster:
     from motioncast.inference.session import GraphForecaster  # onnxruntime only where a graph is run
 
     return GraphForecaster(_card(weights), weights)

@@ -17,7 +17,7 @@ from motioncast.core.resample import bridge
 from motioncast.core.scene import Scene
 from motioncast.core.skeleton import Skeleton
 from motioncast.errors import InputError, SceneError
-from motioncast.inference.baselines import guess, one_future, present, root_velocity_damped
+from motioncast.inference.baselines import frames_ahead, guess, one_future, present, root_velocity_damped
 from motioncast.inference.lift import Lift, between_frames, keep_lengths, lower, needed_frames, reach, rigid_bones
 from motioncast.inference.stream import Stream
 
@@ -81,7 +81,7 @@ class GraphForecaster:
         farthest = float(np.abs(asked.positions).max())
         if farthest > FARTHEST_M:
             raise SceneError(f"a joint is {farthest:.0f} m from the origin; expected metres within {FARTHEST_M:g} m")
-        frames = max(1, round((horizon_s or card.horizon / card.fps) * scene.fps))
+        frames = frames_ahead(card, scene, horizon_s)
         model_frames = int(np.ceil(frames * card.fps / scene.fps - 1e-6))
         past = lower(asked, card.joints, card.fps, card.history)
         brief = ~past.observed[: card.history // 2 + 1].any((0, 2)) | ~past.observed[-1].any(-1)
@@ -141,7 +141,8 @@ class GraphForecaster:
         radii = {}
         for level, table in self.card.radius.get("levels", {}).items():
             table = np.concatenate([np.zeros((1, len(self.card.joints))), np.asarray(table, float)])
-            growth = (table[-1] - table[-16]) / (model_times[-1] - model_times[-16])
+            back = max(0, len(table) - 16)  # the growth of the last second, or of a shorter horizon
+            growth = (table[-1] - table[back]) / (model_times[-1] - model_times[back])
             beyond = np.maximum(times - model_times[-1], 0)[:, None] * np.maximum(growth, 0)
             known = np.stack([np.interp(times, model_times, column) for column in table.T], 1)
             radii[level] = (known + beyond)[:, served].astype(np.float32)

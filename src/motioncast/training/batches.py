@@ -109,12 +109,15 @@ class Sampler:
                 return window * np.float32(random.uniform(*recipe.scale)), mask
 
     def worsened(self, positions: np.ndarray, observed: np.ndarray, random: np.random.Generator) -> Batch:
-        """The batch as a tracker would see it: noise, joints not seen, people who are not there."""
+        """The batch as a tracker would see it: noise, joints not seen, people who enter late or are not there."""
         recipe, h = self.recipe, self.history
         seen = positions[:, :h] + random.normal(0, recipe.noise_m, positions[:, :h].shape).astype(np.float32)
         observed = observed.copy()
         observed[:, :h] &= random.random(observed[:, :h].shape) >= recipe.drop
-        absent = random.random((len(positions), positions.shape[2])) < recipe.hide
+        people = (len(positions), positions.shape[2])
+        entry = random.integers(1, h // 2 + 1, people) * (random.random(people) < recipe.late)
+        observed[:, :h] &= np.arange(h)[:, None, None] >= entry[:, None, :, None]
+        absent = random.random(people) < recipe.hide
         absent[:, 0] = False
         observed &= ~absent[:, None, :, None]
         return Batch(positions, observed, seen)

@@ -33,6 +33,7 @@ class Recipe:
         mirror: Share of scenes that are mirrored.
         yaw: Whether scenes are turned at random (for models that do not see through it).
         hide: Share of people that are taken out of a scene.
+        late: Share of people who enter the scene within the first half of the history.
         drop: Share of joints of the history that are not seen.
         noise_m: Standard deviation of the noise on seen positions.
         validate_every: Steps between two looks at the validation takes.
@@ -60,6 +61,7 @@ class Recipe:
     mirror: float = 0.5
     yaw: bool = False
     hide: float = 0.1
+    late: float = 0.1
     drop: float = 0.02
     noise_m: float = 0.002
     validate_every: int = 500

@@ -247,7 +247,7 @@ def _add_bodies(
         first = tracks[name][2]
         there = tracks[name][1].all(-1)[first:, :, None, None]
         rotations = np.where(there, _smooth_signs(bent)[first:], [1, 0, 0, 0])
-        block.add(f"{name}/rotations", rotations, 1 / 8192)
+        block.add(f"{name}/rotations", rotations, 1 / 4096)
         block.add(f"{name}/heads", np.where(there, bent.heads[first:] - origin, 0), scale)
     return len(body.bones)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from motioncast.core.scene import Scene
 from motioncast.core.skeletons import MRT15, SOMOF13
-from motioncast.errors import SceneError
+from motioncast.errors import InputError, SceneError
 from motioncast.inference.baselines import SimpleGuess
 from motioncast.testing import walkers
 
@@ -48,3 +48,26 @@ def test_nobody_is_refused() -> None:
     scene = walkers(frames=20)
     with pytest.raises(SceneError, match="nobody"):
         ask("zero-velocity", Scene(scene.positions, MRT15, 15, np.zeros_like(scene.observed)))
+
+
+def test_who_has_just_come_goes_on_as_fast_as_seen() -> None:
+    scene = walkers(people=2, frames=20)
+    late = scene.observed.copy()
+    late[:-3, 1] = False
+    positions = np.where(late[..., None], scene.positions, 0)
+    answer = ask("root-velocity-damped", Scene(positions, MRT15, 15, late))
+    step = (scene.positions[-1, 1, PELVIS] - scene.positions[-3, 1, PELVIS]) / 2
+    np.testing.assert_allclose(answer[0, 1], scene.positions[-1, 1] + step, atol=1e-4)
+
+
+def test_a_joint_that_was_never_seen_stays_with_its_body() -> None:
+    scene = walkers(people=1, frames=20)
+    unseen = scene.observed.copy()
+    unseen[:, 0, 3] = False
+    far = Scene(scene.positions + np.float32(30), MRT15, 15, unseen)
+    assert np.linalg.norm(ask("zero-velocity", far)[0, 0, 3] - far.positions[-1, 0, 0]) < 1.0
+
+
+def test_fewer_than_one_future_is_refused() -> None:
+    with pytest.raises(InputError, match="at least 1"):
+        SimpleGuess("zero-velocity").forecast(walkers(), samples=0)

@@ -101,3 +101,8 @@ def test_a_card_that_is_missing_is_named(tmp_path) -> None:
     (tmp_path / "lonely.onnx").write_bytes(b"")
     with pytest.raises(InputError, match=r"lonely\.json"):
         load(tmp_path / "lonely.onnx")
+
+
+def test_seventeen_people_are_too_many(model: GraphForecaster) -> None:
+    with pytest.raises(SceneError, match="at most 16"):
+        model.forecast(walkers(people=17))

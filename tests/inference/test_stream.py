@@ -55,7 +55,9 @@ def test_a_lost_frame_is_a_gap_and_an_ancient_one_is_ignored(stream: Stream) -> 
         answer = stream.push(frame(index), index / 30)
     assert answer is not None
     before = stream.positions.copy()
-    stream.push(frame(0), -100.0)
+    answer = stream.push(frame(0), -100.0)
+    assert answer is not None
+    assert "too late" in answer.warnings[-1]
     np.testing.assert_array_equal(stream.positions, before)
 
 

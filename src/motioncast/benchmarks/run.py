@@ -15,10 +15,11 @@ from motioncast.core.skeletons import SKELETONS
 from motioncast.datasets.windows import Windows
 from motioncast.errors import InputError
 from motioncast.inference.registry import load
-from motioncast.metrics.position import mpjpe_at, vim_at
+from motioncast.metrics.position import joint_errors
 
 SIMPLE_GUESSES = ("zero-velocity", "constant-velocity", "neck-velocity", "root-velocity-damped")
 RESAMPLES = 1000
+FEWEST_TAKES = 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,39 +131,47 @@ def forecast_windows(
 
 
 def score(protocol: Protocol, windows: Windows, forecasts: np.ndarray) -> list[Row]:
-    """The figures of forecasts, each moment and the summary ratio."""
+    """The figures of forecasts: each moment, then the mean of the summary's moments over that of standing still."""
     truth, observed = windows.future
     still = np.broadcast_to(windows.past[0][:, -1:], truth.shape)
-    takes = np.array(windows.takes)
     names = sorted(set(windows.takes))
+    takes = np.array([names.index(take) for take in windows.takes])
+    # errors are sums over counts, so a take is two numbers a moment and resampling takes is cheap
+    totals = [_by_take(protocol, guess, truth, observed, takes, len(names)) for guess in (forecasts, still)]
 
-    def figures(chosen: np.ndarray) -> np.ndarray:
-        """Error at each moment, then the ratio."""
-        curves = [_curve(protocol, guess[chosen], truth[chosen], observed[chosen]) for guess in (forecasts, still)]
-        summary = [np.mean([curve[moment - 1] for moment in protocol.summary]) for curve in curves]
-        return np.array([*(curves[0][moment - 1] for moment in protocol.moments), summary[0] / summary[1]])
+    def figures(times_drawn: np.ndarray) -> np.ndarray:
+        model, zero = ((times_drawn @ total) / (times_drawn @ count) for total, count in totals)
+        summary = [protocol.moments.index(moment) for moment in protocol.summary]
+        return np.append(model, model[summary].mean() / zero[summary].mean())
 
-    values = figures(np.arange(len(windows)))
+    values = figures(np.ones(len(names)))
     low: list[float | None] = [None] * len(values)
     high: list[float | None] = [None] * len(values)
-    if len(names) >= 10:
-        members = [np.flatnonzero(takes == name) for name in names]
+    if len(names) >= FEWEST_TAKES:
         random = np.random.default_rng(0)
-        draws = np.array([
-            figures(np.concatenate([members[pick] for pick in random.integers(len(names), size=len(names))]))
-            for _ in range(RESAMPLES if len(windows) < 500 else RESAMPLES // 10)
-        ])  # fmt: skip
-        low, high = (list(np.percentile(draws, percent, axis=0)) for percent in (2.5, 97.5))
+        draws = random.multinomial(len(names), np.full(len(names), 1 / len(names)), RESAMPLES)
+        spread = np.array([figures(drawn) for drawn in draws])
+        low, high = (np.percentile(spread, percent, axis=0).tolist() for percent in (2.5, 97.5))
     unit = "mm" if protocol.metric == "mpjpe" else "cm"
     rows = [
-        Row(f"{protocol.metric}_at", moment / protocol.fps, float(value), unit, len(windows), low[i], high[i])
-        for i, (moment, value) in enumerate(zip(protocol.moments, values, strict=False))
+        Row(f"{protocol.metric}_at", moment / protocol.fps, float(values[i]), unit, len(windows), low[i], high[i])
+        for i, moment in enumerate(protocol.moments)
     ]
     last = protocol.summary[-1] / protocol.fps
     return [*rows, Row("ratio_to_zero_velocity", last, float(values[-1]), "1", len(windows), low[-1], high[-1])]
 
 
-def _curve(protocol: Protocol, forecast: np.ndarray, truth: np.ndarray, observed: np.ndarray) -> np.ndarray:
-    if protocol.metric == "vim":
-        return vim_at(forecast, truth) * 100
-    return mpjpe_at(forecast, truth, observed) * 1000
+def _by_take(
+    protocol: Protocol, forecast: np.ndarray, truth: np.ndarray, observed: np.ndarray, takes: np.ndarray, count: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Sum of errors and number of them, each ``(takes, moments)``, in the unit that is printed."""
+    frames = [moment - 1 for moment in protocol.moments]
+    forecast, truth, observed = forecast[:, frames], truth[:, frames], observed[:, frames]
+    if protocol.metric == "vim":  # a person counts where all joints are seen
+        seen = observed.all(-1)
+        errors = np.sqrt(np.square(joint_errors(forecast, truth)).sum(-1)) * 100
+        sums, counts = (errors * seen).sum(2), seen.sum(2)
+    else:
+        sums, counts = (joint_errors(forecast, truth) * observed).sum((2, 3)) * 1000, observed.sum((2, 3))
+    member = np.eye(count)[takes]
+    return member.T @ sums, member.T @ counts

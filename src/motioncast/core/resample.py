@@ -89,6 +89,8 @@ def sample(values: np.ndarray, times: np.ndarray, step: float = 1.0) -> np.ndarr
 def bridge(positions: np.ndarray, observed: np.ndarray) -> np.ndarray:
     """Positions in which gaps are bridged by straight lines, and ends hold the nearest seen position.
 
+    A joint that is never seen stands in the middle of those that are.
+
     Args:
         positions: ``(time, people, joints, 3)``.
         observed: ``(time, people, joints)`` bool.
@@ -97,9 +99,11 @@ def bridge(positions: np.ndarray, observed: np.ndarray) -> np.ndarray:
         return positions
     filled = positions.astype(np.float64)
     time = np.arange(len(positions))
-    for person, joint in np.argwhere(~observed.all(0) & observed.any(0)):
+    ever = observed.any(0)
+    for person, joint in np.argwhere(~observed.all(0) & ever):
         seen = observed[:, person, joint]
         for axis in range(3):
             track = filled[:, person, joint, axis]
             filled[:, person, joint, axis] = np.interp(time, time[seen], track[seen])
-    return filled
+    middle = (filled * ever[..., None]).sum(2) / np.maximum(ever.sum(1), 1)[:, None]
+    return np.where(ever[..., None], filled, middle[:, :, None])

@@ -328,7 +328,7 @@ NEAREST_PARENTS: dict[str, tuple[str, ...]] = {
     "neck_base": ("upper_spine", "middle_spine", "lower_spine", "pelvis"),
     "neck": ("neck_base", "upper_spine", "middle_spine", "lower_spine", "pelvis", "left_hip"),
     "upper_neck": ("neck", "neck_base"),
-    "head": ("upper_neck", "neck", "neck_base", "nose"),
+    "head": ("upper_neck", "neck", "neck_base"),
     "head_top": ("head", "upper_neck", "neck", "neck_base"),
     "nose": ("head", "upper_neck", "neck", "neck_base"),
     "right_hip": ("pelvis", "lower_spine", "left_hip"),

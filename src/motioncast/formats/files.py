@@ -44,9 +44,9 @@ def atomic_write(path: str | Path) -> Iterator[Path]:
         ['note.txt']
     """
     path = Path(path)
-    if path.is_dir():
+    if os.path.isdir(path):  # unlike Path.is_dir, false for names that no file can have
         raise OutputError(f"cannot write {path}: it is a folder; give the name of a file")
-    if not path.parent.is_dir():
+    if not os.path.isdir(path.parent):
         raise OutputError(f"cannot write {path}: there is no folder {path.parent}; make it first")
     temporary = path.with_name(f".{path.stem[:40]}.{secrets.token_hex(4)}{path.suffix}")
     try:
@@ -97,7 +97,7 @@ def read_bytes(path: str | Path, limit: int | None = None) -> bytes:
         InputError: If there is no such file or it cannot be read.
     """
     path = Path(path)
-    if path.is_dir():
+    if os.path.isdir(path):
         raise InputError(f"{path} is a folder; give a file")
     try:
         with path.open("rb") as file:

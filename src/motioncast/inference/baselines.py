@@ -29,39 +29,57 @@ HORIZON = 45
 DAMPING = 0.95
 
 
-def zero_velocity(recent: np.ndarray, scene: Scene, ahead: np.ndarray) -> np.ndarray:
+@dataclass(frozen=True, slots=True)
+class Recent:
+    """The last frames of a scene at 15 a second.
+
+    Attributes:
+        positions: ``(time, people, joints, 3)``; who came later stands where first seen before that.
+        steps: Number of frame intervals in which each person was there, ``(people,)``.
+        scene: The scene.
+    """
+
+    positions: np.ndarray
+    steps: np.ndarray
+    scene: Scene
+
+    def velocity(self, track: np.ndarray, steps: int) -> np.ndarray:
+        """Mean step over the last ``steps`` intervals, or as many as a person was there, ``(people, 3)``."""
+        reach = np.clip(self.steps, 1, steps)
+        earlier = track[len(track) - 1 - reach, np.arange(track.shape[1])]
+        return (track[-1] - earlier) / reach[:, None]
+
+    def place(self, landmark: str) -> np.ndarray:
+        """Where a place of the body was, ``(time, people, 3)``; the middle of all joints where it has no joint."""
+        for places in ((landmark,), *STAND_INS.get(landmark, ())):
+            joints = [self.scene.skeleton.find(name) for name in places]
+            if None not in joints:
+                return self.positions[:, :, joints].mean(2)
+        return self.positions.mean(2)
+
+
+def zero_velocity(recent: Recent, ahead: np.ndarray) -> np.ndarray:
     """Everybody stays as they are."""
-    return np.zeros((len(ahead), *recent.shape[1:]))
+    return np.zeros((len(ahead), *recent.positions.shape[1:]))
 
 
-def constant_velocity(recent: np.ndarray, scene: Scene, ahead: np.ndarray) -> np.ndarray:
+def constant_velocity(recent: Recent, ahead: np.ndarray) -> np.ndarray:
     """Every joint goes on as it did between the last two frames."""
-    return ahead[:, None, None, None] * (recent[-1] - recent[-2])
+    return ahead[:, None, None, None] * (recent.positions[-1] - recent.positions[-2])
 
 
-def neck_velocity(recent: np.ndarray, scene: Scene, ahead: np.ndarray) -> np.ndarray:
+def neck_velocity(recent: Recent, ahead: np.ndarray) -> np.ndarray:
     """The last pose is carried along with the neck's mean velocity over three frames."""
-    neck = place(recent, scene, "neck")
-    return ahead[:, None, None, None] * ((neck[-1] - neck[-4]) / 3)[:, None]
+    return ahead[:, None, None, None] * recent.velocity(recent.place("neck"), 3)[:, None]
 
 
-def root_velocity_damped(recent: np.ndarray, scene: Scene, ahead: np.ndarray) -> np.ndarray:
+def root_velocity_damped(recent: Recent, ahead: np.ndarray) -> np.ndarray:
     """The last pose is carried along with the root's mean velocity over seven frames, which fades by 0.95 a frame."""
-    root = place(recent, scene, "pelvis")
     path = (1 - DAMPING**ahead) / (1 - DAMPING)  # 1 + 0.95 + 0.95^2 + ...: the first step is undamped
-    return path[:, None, None, None] * ((root[-1] - root[-8]) / 7)[:, None]
+    return path[:, None, None, None] * recent.velocity(recent.place("pelvis"), 7)[:, None]
 
 
-def place(recent: np.ndarray, scene: Scene, landmark: str) -> np.ndarray:
-    """Where a place of the body was, ``(time, people, 3)``; the middle of all joints where it has no joint."""
-    for places in ((landmark,), *STAND_INS.get(landmark, ())):
-        joints = [scene.skeleton.find(name) for name in places]
-        if None not in joints:
-            return recent[:, :, joints].mean(2)
-    return recent.mean(2)
-
-
-Rule = Callable[[np.ndarray, Scene, np.ndarray], np.ndarray]
+Rule = Callable[[Recent, np.ndarray], np.ndarray]
 
 RULES: dict[str, Rule] = {
     "zero-velocity": zero_velocity,
@@ -69,7 +87,7 @@ RULES: dict[str, Rule] = {
     "neck-velocity": neck_velocity,
     "root-velocity-damped": root_velocity_damped,
 }
-"""Guesses by name. A rule gets the last frames at 15 a second, the scene and how many such frames to look ahead."""
+"""Guesses by name. A rule gets the last frames at 15 a second and how many such frames to look ahead."""
 
 
 STRETCHING = {"rigid_bones": "each joint goes its own straight way, so limbs stretch"}
@@ -128,9 +146,11 @@ def guess(rule: Rule, scene: Scene, frames: int) -> np.ndarray:
     positions = bridge(window.positions, window.observed)
     step = scene.fps / FPS
     times = len(positions) - 1 - step * np.arange(MEMORY - 1, -1, -1)
-    recent = sample(positions, np.maximum(times, 0), step)
+    first = window.observed.any(-1).argmax(0)  # frame in which each person appears
+    steps = np.floor((len(positions) - 1 - first) / step + 1e-6).astype(int)
+    recent = Recent(sample(positions, np.maximum(times, 0), step), steps, scene)
     ahead = np.arange(1, frames + 1) / step
-    return (recent[-1] + rule(recent, scene, ahead)).astype(np.float32)
+    return (recent.positions[-1] + rule(recent, ahead)).astype(np.float32)
 
 
 def present(scene: Scene) -> list[str]:
@@ -163,7 +183,13 @@ def frames_ahead(card: ModelCard, scene: Scene, horizon_s: float | None) -> int:
 
 
 def one_future(name: str, samples: int) -> tuple[str, ...]:
-    """What is said to a user who asks a model of one future for several."""
+    """What is said to a user who asks a model of one future for several.
+
+    Raises:
+        InputError: If fewer than one is asked for.
+    """
+    if samples < 1:
+        raise InputError(f"{samples} samples were asked for; ask for at least 1")
     if samples == 1:
         return ()
     return (f'model "{name}" has one future, not {samples}; its doubt is the error radius',)

@@ -21,6 +21,9 @@ from motioncast.inference.baselines import frames_ahead, guess, one_future, pres
 from motioncast.inference.lift import Lift, between_frames, keep_lengths, lower, needed_frames, reach, rigid_bones
 from motioncast.inference.stream import Stream
 
+ENTRY = 2
+"""Who is not seen within so many first frames of the history has too little of it for the model."""
+
 FARTHEST_M = 10_000.0
 """Coordinates beyond this are a mistake, or geographic: metres from far away lose their millimetres in float32."""
 
@@ -78,13 +81,18 @@ class GraphForecaster:
         warnings = list(one_future(card.name, samples))
         recent = scene[-needed_frames(card.history, card.fps, scene.fps) :]
         asked = recent.select(present(recent))
+        if len(asked.people) > card.people:
+            raise SceneError(
+                f'{len(asked.people)} people are seen in the last frame; model "{card.name}" takes at most '
+                f"{card.people}, so forecast them in groups (scene.select)"
+            )
         farthest = float(np.abs(asked.positions).max())
         if farthest > FARTHEST_M:
             raise SceneError(f"a joint is {farthest:.0f} m from the origin; expected metres within {FARTHEST_M:g} m")
         frames = frames_ahead(card, scene, horizon_s)
         model_frames = int(np.ceil(frames * card.fps / scene.fps - 1e-6))
         past = lower(asked, card.joints, card.fps, card.history)
-        brief = ~past.observed[: card.history // 2 + 1].any((0, 2)) | ~past.observed[-1].any(-1)
+        brief = ~past.observed[:ENTRY].any((0, 2)) | ~past.observed[-1].any(-1)
         positions, observed = bridge(past.positions, past.observed), past.observed & ~brief[:, None]
         if model_frames > card.horizon and not brief.all():
             warnings.append(

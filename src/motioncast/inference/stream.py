@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -63,7 +64,10 @@ class Stream:
             return None
         start = max(0, self.memory - self.now - 1)
         positions, observed = self.positions[start:].copy(), self.observed[start:].copy()
-        return self.answer(Scene(positions, self.skeleton, self.fps, observed, tuple(self.people), source="stream"))
+        answer = self.answer(Scene(positions, self.skeleton, self.fps, observed, tuple(self.people), source="stream"))
+        if row is not None:
+            return answer
+        return replace(answer, warnings=(*answer.warnings, f"the frame of {time_s} s came too late and was left out"))
 
     def _row(self, time_s: float | None) -> int | None:
         """The remembered row of a frame; newer frames move the memory on, too old ones have none."""

@@ -1,0 +1,157 @@
+"""The page in a real browser: it is drawn, it obeys, it asks nobody for anything."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import chromium
+import numpy as np
+import pytest
+from motioncast.core.card import ModelCard
+from motioncast.core.forecast import Forecast
+from motioncast.core.scene import Scene
+from motioncast.core.skeletons import MRT15
+from motioncast.view.page import write_page
+
+
+
+pytestmark = [
+    pytest.mark.browser,
+    pytest.mark.skipif(chromium.find() is None, reason="needs Chromium"),
+]
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[chromium.Chromium]:
+    with chromium.Chromium() as opened:
+        yield opened
+
+
+@pytest.fixture
+def page(browser: chromium.Chromium, walkers: Scene, tmp_path: Path) -> Path:
+    """A page with everything in it: three samples, radii, a truth that is 20 cm off, a baseline."""
+    truth = walkers[20:]
+    ahead = truth.positions + np.array([0.0, 0.2, 0.0], np.float32)
+    samples = np.stack([ahead, ahead + np.float32(0.1), ahead - np.float32([0.1, 0.1, 0])])
+    radius = {"0.5": np.full((40, 15), 0.15), "0.9": np.full((40, 15), 0.4)}
+    card = ModelCard("somoformer-fast", "SoMoFormer", "forecast", "mrt15", 15, 45, 15.0)
+    forecast = Forecast(samples, walkers[:20], walkers.people, card, radius_m=radius)
+    target = tmp_path / "page.html"
+    still = (forecast.times_s, forecast.times_s * 0.8)
+    write_page(forecast, target, truth, "Two <walkers>", {"standing still": still})
+    browser.events.clear()
+    browser.resize((1000, 640))
+    return target
+
+
+def complaints(browser: chromium.Chromium) -> list[dict]:
+    """What the page threw or printed; notes of the graphics driver are not the page's."""
+    return [
+        event["params"]
+        for event in browser.events
+        if event.get("method") in ("Runtime.exceptionThrown", "Runtime.consoleAPICalled")
+        or (event.get("method") == "Log.entryAdded" and event["params"]["entry"]["source"] != "rendering")
+    ]
+
+
+def test_it_is_drawn_and_asks_for_nothing_but_itself(browser: chromium.Chromium, page: Path) -> None:
+    browser.open(page, "t=0.5")
+    assert browser.evaluate("window.__mc.colors()") > 50  # pyright: ignore[reportOperatorIssue]
+    requests = [
+        event["params"]["request"]["url"]
+        for event in browser.events
+        if event.get("method") == "Network.requestWillBeSent"
+    ]
+    outside = [url for url in requests if not url.startswith((page.as_uri(), "about:", "data:", "blob:"))]
+    assert outside == []
+    assert complaints(browser) == []
+    assert browser.evaluate("document.getElementById('title').textContent") == "Two <walkers>"
+    assert browser.evaluate("document.getElementById('failed').hidden") is True
+
+
+@pytest.mark.parametrize("key", ["f", "t", "s", "p", "b", "e", "2", "3"])
+def test_a_key_changes_the_picture_and_changes_it_back(browser: chromium.Chromium, page: Path, key: str) -> None:
+    browser.open(page, "t=0.6")
+    before = browser.picture()
+    browser.key(key)
+    assert browser.picture() != before
+    if key in "ftsp":
+        browser.key(key)
+        browser.evaluate("document.activeElement.blur()")
+        assert browser.picture() == before
+    assert complaints(browser) == []
+
+
+def test_the_playhead_obeys_keys_and_stays_within_the_scene(browser: chromium.Chromium, page: Path) -> None:
+    browser.open(page, "t=0")
+
+    def time() -> float:
+        return round(float(browser.evaluate("window.__mc.state.time")), 3)  # pyright: ignore[reportArgumentType]
+
+    for key, expected in (
+        ("ArrowRight", 1 / 30), ("ArrowLeft", 0), ("End", 40 / 30), ("ArrowRight", 40 / 30),
+        ("Home", -19 / 30), ("ArrowLeft", -19 / 30), ("n", 0),
+    ):  # fmt: skip
+        browser.key(key)
+        assert time() == pytest.approx(expected, abs=2e-3), key
+    assert browser.evaluate("document.getElementById('clock').textContent") == "now"
+
+
+def test_it_plays(browser: chromium.Chromium, page: Path) -> None:
+    browser.open(page, "t=0")
+    browser.key(" ")
+    moved = "new Promise(done => { const look = () => window.__mc.state.time > 0.1 ? done(1) : setTimeout(look, 20); look() })"
+    assert browser.evaluate(moved) == 1
+    browser.key(" ")
+    assert browser.evaluate("window.__mc.state.playing") is False
+
+
+def test_the_address_keeps_the_view(browser: chromium.Chromium, page: Path) -> None:
+    browser.open(page, "t=0.5&camera=top&look=bones&doubt=joints&layers=forecast&samples=2")
+    state = "[window.__mc.state.camera, window.__mc.state.look, window.__mc.state.doubt, [...window.__mc.state.layers]]"
+    assert browser.evaluate(state) == ["top", "bones", "joints", ["forecast"]]
+    assert browser.evaluate("document.getElementById('drawn').textContent") == "2 of 3"
+    browser.open(page, "t=nonsense&camera=../../&layers=&samples=99")
+    assert browser.evaluate("window.__mc.state.camera") == "follow"
+    assert complaints(browser) == []
+
+
+def test_help_opens_and_closes(browser: chromium.Chromium, page: Path) -> None:
+    browser.open(page, "t=0.5")
+    browser.key("?")
+    assert browser.evaluate("document.getElementById('help').open") is True
+    browser.evaluate("document.getElementById('close').click()")
+    assert browser.evaluate("document.getElementById('help').open") is False
+
+
+def test_a_phone_shows_all_of_it(browser: chromium.Chromium, page: Path) -> None:
+    browser.resize((390, 844), mobile=True)
+    browser.open(page, "t=0.5")
+    wide = browser.evaluate("document.documentElement.scrollWidth")
+    assert wide == 390
+    for part in ("play", "time", "more", "clock"):
+        box = browser.evaluate(f"document.getElementById('{part}').getBoundingClientRect().toJSON()")
+        assert isinstance(box, dict)
+        assert box["left"] >= 0
+        assert box["right"] <= 390
+        assert box["bottom"] <= 844
+    assert browser.evaluate("getComputedStyle(document.getElementById('options')).display") == "none"
+    browser.evaluate("document.getElementById('more').click()")
+    assert browser.evaluate("getComputedStyle(document.getElementById('options')).display") == "grid"
+    assert browser.evaluate("window.__mc.colors()") > 50  # pyright: ignore[reportOperatorIssue]
+
+
+def test_people_who_cannot_carry_a_body_are_bones(
+    browser: chromium.Chromium, walkers: Scene, tmp_path: Path
+) -> None:
+    from dataclasses import replace
+
+    plain = replace(walkers, skeleton=replace(MRT15, landmarks=("",) * 15))
+    card = ModelCard("somoformer-fast", "SoMoFormer", "forecast", "mrt15", 15, 45, 15.0)
+    write_page(Forecast(plain.positions[None, 20:], plain[:20], plain.people, card), tmp_path / "bones.html")
+    browser.events.clear()
+    browser.open(tmp_path / "bones.html", "t=0.5")
+    assert browser.evaluate("window.__mc.colors()") > 20  # pyright: ignore[reportOperatorIssue]
+    assert browser.evaluate("document.getElementById('looks').hidden") is True
+    assert complaints(browser) == []

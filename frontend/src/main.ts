@@ -11,6 +11,21 @@ declare global {
   interface Window { __mc?: { ready: boolean; state: unknown; seek: (time: number) => void; colors: () => number } }
 }
 
+/** Fewer pixels for a machine that cannot keep up while it plays; a still picture is always sharp. */
+class Pace {
+  private share = 1;
+  private slow = 0;
+
+  sharpness(passed: number): number {
+    this.slow = passed > 0.05 ? this.slow + 1 : Math.max(this.slow - 1, 0);
+    if (this.slow > 8 && this.share > 0.5) {
+      this.share = Math.max(this.share * 0.75, 0.5);
+      this.slow = 0;
+    }
+    return this.share;
+  }
+}
+
 async function start(): Promise<void> {
   const page = await readPage();
   const { about } = page;
@@ -19,6 +34,7 @@ async function start(): Promise<void> {
   const canvas = document.getElementById("stage") as HTMLCanvasElement;
   const stage = new Stage(canvas, page);
   let stale = true, sudden = true, rewrite = 0;
+  const pace = new Pace();
 
   const change = (jump: boolean) => {
     stale = true;
@@ -63,6 +79,11 @@ async function start(): Promise<void> {
         sudden ||= again;
       }
       change(false);
+    }
+    const sharpness = state.playing ? pace.sharpness(passed) : 1;
+    if (sharpness !== stage.sharpness) {
+      stage.sharpen(sharpness);
+      stale = true;
     }
     if (stale) {
       stale = false;

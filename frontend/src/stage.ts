@@ -38,6 +38,7 @@ export class Stage {
   private readonly ways = new Object3D();
   private readonly centre = new Vector3();
   private look: Theme = theme();
+  sharpness = 1;
 
   constructor(canvas: HTMLCanvasElement, private readonly page: Page) {
     const { about, arrays } = page;
@@ -100,9 +101,16 @@ export class Stage {
   resize(top: number, bottom: number): void {
     const canvas = this.renderer.domElement;
     const { clientWidth: width, clientHeight: height } = canvas;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    this.renderer.setSize(width, height, false);
+    this.sharpen(this.sharpness);
     this.eye.resize(width, height, top, bottom);
+  }
+
+  /** Draws with this share of the window's pixels along each side. */
+  sharpen(sharpness: number): void {
+    const { clientWidth: width, clientHeight: height } = this.renderer.domElement;
+    this.sharpness = sharpness;
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * sharpness);
+    this.renderer.setSize(width, height, false);
   }
 
   draw(state: State, sudden: boolean): void {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from motioncast.bodies.openbody import bend, load_body, surface
 from motioncast.core.rotation import conjugate, from_axis_angle, multiply, rotate
 from motioncast.core.skeleton import Skeleton
@@ -17,8 +18,8 @@ PLACES = {
         f"{side}_{place}": f"{bone}_{side[0]}"
         for side in ("left", "right")
         for place, bone in {
-            "hip": "thigh", "knee": "calf", "ankle": "foot", "foot": "ball", "toe": "ball", "collar": "clavicle",
-            "shoulder": "upperarm", "elbow": "lowerarm", "wrist": "hand",
+            "hip": "thigh", "knee": "calf", "ankle": "foot", "foot": "ball", "toe": "ball",
+            "collar": "clavicle", "shoulder": "upperarm", "elbow": "lowerarm", "wrist": "hand",
         }.items()
     },
 }  # fmt: skip
@@ -60,7 +61,8 @@ def walking(skeleton: Skeleton, frames: int = 60) -> np.ndarray:
 @pytest.mark.parametrize("skeleton", [MRT15, SMPL22, SOMOF13], ids=lambda skeleton: skeleton.label)
 def test_the_rest_pose_is_no_turn_at_all(skeleton: Skeleton) -> None:
     body, bent = load_body(), bend(standing(skeleton), skeleton)
-    exact = [body.bones.index(f"{bone}_{side}") for bone in ("thigh", "calf", "upperarm", "lowerarm") for side in "lr"]
+    limbs = ("thigh", "calf", "upperarm", "lowerarm")
+    exact = [body.bones.index(f"{bone}_{side}") for bone in limbs for side in "lr"]
     assert np.degrees(angle(bent.rotations)).max() < 15  # the torso of 13 joints is a guess
     assert np.degrees(angle(bent.rotations[:, :, exact])).max() < 6
     away = surface(bent)[0, 0] - (body.vertices - [0, 0, body.vertices[:, 2].min()])
@@ -80,7 +82,8 @@ def test_limbs_start_at_their_joints_and_reach_the_next(skeleton: Skeleton) -> N
             start, end = (points[:, :, skeleton.landmarks.index(f"{side}_{place}")] for place in (top, tip))
             np.testing.assert_allclose(bent.heads[:, :, index], start, atol=1e-5)
             rest = body.head(PLACES[f"{side}_{tip}"]) - body.heads[index]
-            reached = start + rotate(bent.rotations[:, :, index].astype(float), rest * bent.scales[0, index, 0])
+            turn = bent.rotations[:, :, index].astype(float)
+            reached = start + rotate(turn, rest * bent.scales[0, index, 0])
             np.testing.assert_allclose(reached, end, atol=1e-4)
 
 
@@ -93,7 +96,7 @@ def test_no_bone_flips(skeleton: Skeleton) -> None:
 
 def test_knees_and_elbows_bend_the_right_way() -> None:
     body, bent = load_body(), bend(walking(SMPL22), SMPL22)
-    for bone in ("thigh_l", "thigh_r", "calf_l", "calf_r"):  # a hinge that points to the left stays to the left
+    for bone in ("thigh_l", "thigh_r", "calf_l", "calf_r"):
         left = rotate(bent.rotations[:, :, body.bones.index(bone)].astype(float), np.array([1.0, 0, 0]))
         assert left[..., 0].min() > 0.9
 
@@ -101,8 +104,9 @@ def test_knees_and_elbows_bend_the_right_way() -> None:
 def test_it_turns_and_moves_with_the_person() -> None:
     points = walking(SMPL22)
     turn = from_axis_angle(np.array([0, 0, 1.1]))
-    moved = rotate(turn, points) + [3, -2, 0]
-    expected = rotate(turn, surface(bend(points, SMPL22)).astype(float)) + [3, -2, 0]
+    shift = np.array([3.0, -2.0, 0.0])
+    moved = rotate(turn, points) + shift
+    expected = rotate(turn, surface(bend(points, SMPL22)).astype(float)) + shift
     np.testing.assert_allclose(surface(bend(moved, SMPL22)), expected, atol=1e-4)
 
 
@@ -117,7 +121,8 @@ def test_feet_on_the_ground_are_flat_and_point_ahead() -> None:
     for skeleton in (MRT15, SMPL22):
         bent = bend(standing(skeleton, frames=5), skeleton)
         for side in "lr":
-            ahead = rotate(bent.rotations[:, :, body.bones.index(f"ball_{side}")].astype(float), np.array([0, -1.0, 0]))
+            turn = bent.rotations[:, :, body.bones.index(f"ball_{side}")].astype(float)
+            ahead = rotate(turn, np.array([0, -1.0, 0]))
             assert ahead[..., 1].max() < -0.95
             assert np.abs(ahead[..., 2]).max() < 0.05
 

@@ -1,6 +1,6 @@
 """A headless Chromium, driven over a pair of pipes; and a picture of a page from the command line.
 
-    python tests/browser/chromium.py page.html picture.png --time 1.2 --size 1280x800
+python tests/browser/chromium.py page.html picture.png --time 1.2 --size 1280x800
 """
 
 from __future__ import annotations
@@ -99,9 +99,10 @@ class Chromium:
 
     def resize(self, size: tuple[int, int], mobile: bool = False) -> None:
         """Sets the size of the window."""
-        self.call(
-            "Emulation.setDeviceMetricsOverride", width=size[0], height=size[1], deviceScaleFactor=1, mobile=mobile
-        )
+        self._size = size
+        width, height = size
+        metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": mobile}
+        self.call("Emulation.setDeviceMetricsOverride", **metrics)
         self.call("Emulation.setTouchEmulationEnabled", enabled=mobile)
 
     def evaluate(self, expression: str) -> object:
@@ -124,7 +125,8 @@ class Chromium:
 
     def frame(self) -> None:
         """Waits until the next frames are drawn."""
-        self.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))")
+        wait = "new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(1))))"
+        self.evaluate(wait)
 
     def key(self, key: str) -> None:
         """Presses a key."""
@@ -133,10 +135,12 @@ class Chromium:
         self.call("Input.dispatchKeyEvent", type="keyUp", key=key)
         self.frame()
 
-    def picture(self) -> bytes:
-        """The window as PNG."""
+    def picture(self, clip: tuple[int, int, int, int] | None = None) -> bytes:
+        """The window, or a part of it (left, top, width, height), as PNG."""
         self.frame()
-        return base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
+        left, top, width, height = clip or (0, 0, *self._size)
+        part = {"x": left, "y": top, "width": width, "height": height, "scale": 1}
+        return base64.b64decode(self.call("Page.captureScreenshot", format="png", clip=part)["data"])
 
 
 def main() -> None:
@@ -154,7 +158,11 @@ def main() -> None:
         browser.open(wanted.page, f"t={wanted.time}&{wanted.view}")
         wanted.picture.write_bytes(browser.picture())
         for event in browser.events:
-            if event.get("method") in ("Runtime.exceptionThrown", "Log.entryAdded", "Runtime.consoleAPICalled"):
+            if event.get("method") in (
+                "Runtime.exceptionThrown",
+                "Log.entryAdded",
+                "Runtime.consoleAPICalled",
+            ):
                 print(json.dumps(event["params"])[:600])
 
 

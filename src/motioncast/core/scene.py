@@ -48,7 +48,8 @@ class Scene:
     remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        positions = np.asarray(self.positions, np.float32)
+        with np.errstate(over="ignore"):  # what float32 cannot hold becomes infinite and is refused below
+            positions = np.asarray(self.positions, np.float32)
         if positions.ndim != 4 or positions.shape[-1] != 3 or positions.shape[2] != len(self.skeleton):
             raise SceneError(
                 f"positions have shape {positions.shape}; expected (time, people, {len(self.skeleton)} joints, 3)"
@@ -65,6 +66,12 @@ class Scene:
                 f'the position of "{self.skeleton.names[joint]}" of person {person + 1} in frame {time} is not a '
                 "finite number; mark it as not observed or mend it"
             )
+        for name, given, wanted in (
+            ("rotations", self.rotations, (*positions.shape[:3], 4)),
+            ("offsets", self.offsets, (*positions.shape[1:],)),
+        ):
+            if given is not None and given.shape != wanted:
+                raise SceneError(f"the {name} have shape {given.shape}; expected {wanted}")
         people = self.people or tuple(f"person {number + 1}" for number in range(positions.shape[1]))
         if len(people) != positions.shape[1] or len(set(people)) != len(people):
             raise SceneError(f"{len(people)} ids came for {positions.shape[1]} people; give each its own")
@@ -141,9 +148,9 @@ def join(scenes: Sequence[Scene]) -> Scene:
                 f"{first.source} has {first.fps:g} frames a second and {other.source} {other.fps:g}; "
                 "people of one scene share one clock (override a wrong header with --fps)"
             )
-        if other.skeleton.names != first.skeleton.names:
+        if (other.skeleton.names, other.skeleton.parents) != (first.skeleton.names, first.skeleton.parents):
             raise SceneError(
-                f"{first.source} and {other.source} have different joints; bring them to one skeleton first"
+                f"{first.source} and {other.source} have different joints or trees; bring them to one skeleton first"
             )
     frames = max(scene.frames for scene in scenes)
 

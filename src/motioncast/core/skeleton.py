@@ -72,7 +72,7 @@ class Skeleton:
 
     def find(self, landmark: str) -> int | None:
         """Index of the joint that marks this landmark, or None."""
-        return self.landmarks.index(landmark) if landmark in self.landmarks else None
+        return self.landmarks.index(landmark) if landmark and landmark in self.landmarks else None
 
     def mirror(self) -> tuple[int, ...]:
         """For each joint the index of its partner on the other side (itself for joints of the middle).
@@ -106,14 +106,14 @@ class Skeleton:
         """
         found: list[tuple[int, ...]] = []
         missing: list[str] = []
-        for landmark in self.landmarks:
+        for name, landmark in zip(self.names, self.landmarks, strict=True):
             for places in ((landmark,), *STAND_INS.get(landmark, ())):
                 indices = tuple(index for index in map(source.find, places) if index is not None)
                 if len(indices) == len(places):
                     found.append(indices)
                     break
             else:
-                missing.append(landmark)
+                missing.append(landmark or f'"{name}"')
         if missing:
             raise SkeletonError(
                 f'skeleton "{source.label}" has no joint for {", ".join(missing)}; its joints are '

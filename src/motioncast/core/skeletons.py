@@ -144,12 +144,16 @@ OPENPOSE_JOINTS: dict[str, str] = {
 
 # The 17 joints of Human3.6M as single-image methods name them: "foot" is the ankle, "head" the top of the head.
 H36M_JOINTS: dict[str, str] = {
-    "hip": "pelvis", "spine": "middle_spine", "thorax": "neck_base", "neck": "neck", "nose": "nose",
-    "necknose": "nose", "head": "head_top",
-    **_sided("l", "r", {
-        "hip": "hip", "knee": "knee", "foot": "ankle", "ankle": "ankle", "shoulder": "shoulder", "elbow": "elbow",
-        "wrist": "wrist",
-    }),
+    "hip": "pelvis", "root": "pelvis", "spine": "middle_spine", "belly": "middle_spine", "torso": "middle_spine",
+    "thorax": "neck_base", "neck": "neck", "nose": "nose", "necknose": "nose", "neckbase": "nose", "head": "head_top",
+    **{
+        name: landmark
+        for left, right in (("left", "right"), ("l", "r"))
+        for name, landmark in _sided(left, right, {
+            "hip": "hip", "knee": "knee", "foot": "ankle", "ankle": "ankle", "shoulder": "shoulder",
+            "elbow": "elbow", "wrist": "wrist",
+        }).items()
+    },
 }  # fmt: skip
 
 # Gait laboratories: joint centres (RHJC, Plug-in Gait's bone ends) and markers on the skin close to a joint.
@@ -193,7 +197,7 @@ def plain(name: str) -> str:
         ('leftupleg', 'lhip')
     """
     key = re.sub(r"[^a-z0-9]", "", name.rpartition(":")[2].lower())
-    return re.sub(r"^(mixamorig\d*|bip0*1)(?=.)", "", key)
+    return re.sub(r"^(mixamorig\d*|character\d+|bip0*1)(?=.)", "", key)
 
 
 def recognise(

@@ -6,7 +6,7 @@ where it can be written, ``write(scene, path)``; it is entered in ``FORMATS``.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Protocol, cast
 
@@ -183,7 +183,7 @@ def read_map(path: str | Path) -> dict[str, str]:
     return named
 
 
-def _writer(path: str | Path, reference: Scene | None = None) -> Callable[[Scene, str | Path], Sequence[Path]]:
+def _writer(path: str | Path, reference: Scene | None = None) -> Callable[[Scene, str | Path], tuple[Path, ...]]:
     suffix = Path(path).suffix.lower()
     if suffix in (".bvh", ".glb"):
         return lambda scene, path: _write_turned(scene, Path(path), reference)

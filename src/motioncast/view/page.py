@@ -1,8 +1,8 @@
 """One self-contained, interactive page of a forecast: no request but the file itself.
 
-The program of the page (``page.js``, ``page.css``, ``page.html``) is built from ``frontend/``. Numbers travel as
-16-bit integers (positions in millimetres, so that rounding costs at most 0.5 mm a coordinate), as steps from frame
-to frame, deflated.
+The program of the page (``page.js``, ``page.css``, ``page.html``) is built from ``frontend/``. Numbers travel
+as 16-bit integers (positions in millimetres, so that rounding costs at most 0.5 mm a coordinate), as steps
+from frame to frame, deflated.
 """
 
 from __future__ import annotations
@@ -33,6 +33,8 @@ HISTORY_S = 4.0
 MOST_FPS = 31.0
 """Frames beyond this rate are left out; the page interpolates."""
 
+SIDES = ("left", "right")
+
 Curves = Mapping[str, tuple[np.ndarray, np.ndarray]]
 """Name -> times in seconds after now, mean joint errors in metres."""
 
@@ -59,11 +61,11 @@ def page_html(
 
     Args:
         forecast: What is shown.
-        truth: What really happened: frame 0 is the first frame after the last seen one. It may be shorter than the
-            forecast and lack people.
+        truth: What really happened: frame 0 is the first frame after the last seen one. It may be shorter
+            than the forecast and lack people.
         title: Heading. Default: the source of the history.
-        curves: Errors of other forecasts, drawn beside the model's own; an entry of the model's name replaces the
-            error that the page would compute (mean over people and joints that the model knows).
+        curves: Errors of other forecasts, drawn beside the model's own; an entry of the model's name
+            replaces the error that the page would compute (mean over people and joints that the model knows).
 
     Raises:
         SceneError: If the truth has other joints or another frame rate than the forecast.
@@ -91,11 +93,11 @@ def page_html(
 
 
 def json_block(value: Any) -> str:
-    """JSON that is safe inside a script element, whatever text it holds.
+    r"""JSON that is safe inside a script element, whatever text it holds.
 
     Example:
         >>> json_block({"name": "</script>"})
-        '{"name":"\\\\u003c/script\\\\u003e"}'
+        '{"name":"\\u003c/script\\u003e"}'
     """
     text = json.dumps(value, separators=(",", ":"), allow_nan=False)
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
@@ -106,7 +108,8 @@ def pack(arrays: Sequence[np.ndarray]) -> bytes:
     steps = [np.diff(array, axis=0, prepend=np.zeros_like(array[:1])).ravel() for array in arrays]
     step = np.concatenate(steps).astype(np.int16)
     zigzag = ((step << 1) ^ (step >> 15)).view(np.uint16)
-    return zlib.compress((zigzag & 255).astype(np.uint8).tobytes() + (zigzag >> 8).astype(np.uint8).tobytes(), 9)
+    low, high = (zigzag & 255).astype(np.uint8), (zigzag >> 8).astype(np.uint8)
+    return zlib.compress(low.tobytes() + high.tobytes(), 9)
 
 
 def _hash(text: str) -> str:
@@ -116,12 +119,12 @@ def _hash(text: str) -> str:
 def _check(forecast: Forecast, truth: Scene) -> None:
     if truth.skeleton.names != forecast.skeleton.names:
         raise SceneError(
-            f"the truth has {len(truth.skeleton)} joints that are not the forecast's {len(forecast.skeleton)}; "
+            f"the truth has other joints than the forecast ({len(truth.skeleton)} and {len(forecast.skeleton)}); "
             "give it on the skeleton of the history"
         )
     if not np.isclose(truth.fps, forecast.fps):
         raise SceneError(
-            f"the truth has {truth.fps:g} frames a second and the forecast {forecast.fps:g}; resample it first"
+            f"the truth has {truth.fps:g} frames a second, the forecast {forecast.fps:g}; resample it first"
         )
 
 
@@ -157,8 +160,7 @@ def _contents(
         cut = truth[: forecast.samples.shape[1]]
         tracks["truth"] = (*future(cut.positions, cut.people, cut.observed), now - 1)
 
-    everything = [main[main_seen], *(track[seen] for track, seen, _ in tracks.values()), *(p[s] for p, s in others)]
-    spots = np.concatenate(everything)
+    spots = np.concatenate([track[seen] for track, seen, *_ in (*tracks.values(), *others)])
     origin = np.round(np.append((spots.min(0)[:2] + spots.max(0)[:2]) / 2, 0)) if len(spots) else np.zeros(3)
     scale = max(1e-3, float(np.abs(spots - origin).max(initial=0)) / 32767)
     block = _Block()
@@ -176,8 +178,9 @@ def _contents(
 
     drawn, heading = _curves(forecast, truth, curves, ahead)
     places = [skeleton.find(name) for name in ("left_hip", "right_hip")]
-    feet = [skeleton.find(f"{side}_{place}") for side in ("left", "right") for place in ("ankle", "foot", "toe")]
-    ends = [skeleton.find(name) for name in ("head", "left_wrist", "right_wrist", "left_ankle", "right_ankle")]
+    feet = [skeleton.find(f"{side}_{place}") for side in SIDES for place in ("ankle", "foot", "toe")]
+    ends = [skeleton.find(f"{side}_{place}") for side in SIDES for place in ("wrist", "ankle")]
+    ends.append(skeleton.find("head"))
     card = forecast.card
     about = {
         "schema": "motioncast.page/1",
@@ -297,7 +300,12 @@ def _curves(
     if drawn:
         return [entry for entry in drawn if entry["times"]], "Mean joint error"
     radii = [
-        curve(f"{100 * float(level):.0f} % of joints within", "radius", forecast.times_s[ahead], radius.mean(1)[ahead])
+        curve(
+            f"{100 * float(level):.0f} % of joints within",
+            "radius",
+            forecast.times_s[ahead],
+            radius.mean(1)[ahead],
+        )
         for level, radius in forecast.radius_m.items()
     ]
     return radii, "Expected joint error"

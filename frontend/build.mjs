@@ -1,5 +1,6 @@
 // Builds src/main.ts and page.css into src/motioncast/view; the same sources give the same bytes.
 import { readFile, writeFile } from "node:fs/promises";
+import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
 
 const here = new URL("./", import.meta.url);
@@ -11,7 +12,7 @@ for (const [entry, name, banner] of [
   ["page.css", "page.css", ""],
 ]) {
   const result = await build({
-    absWorkingDir: new URL(".", here).pathname,
+    absWorkingDir: fileURLToPath(here),
     entryPoints: [entry],
     banner: entry.endsWith(".ts") ? { js: banner } : {},
     bundle: true,

@@ -48,7 +48,7 @@ varying vec3 facing;
 varying vec3 toEye;
 void main() {
   float rim = 1.0 - abs(dot(normalize(facing), normalize(toEye)));
-  gl_FragColor = vec4(color, 0.05 + 0.85 * smoothstep(0.5, 0.95, rim));
+  gl_FragColor = vec4(color, 0.07 + 0.83 * smoothstep(0.58, 0.98, rim));
   #include <colorspace_fragment>
 }`;
 

@@ -25,7 +25,7 @@ export class Eye {
     if (mode === this.mode) return;
     this.mode = mode;
     if (mode === "free") return;
-    const high = mode === "top" ? this.apart + 0.5 : 1.1 + 0.55 * this.apart;
+    const high = mode === "top" ? Math.max(this.apart + 0.5, 1.3) : 1.1 + 0.4 * this.apart;
     const wide = Math.max(this.apart + 0.55, 1.1);
     const room = Math.max(high / this.free, wide / this.camera.aspect) / Math.tan((this.camera.fov * Math.PI) / 360);
     const angle = this.facing + (mode === "front" ? 0 : 0.65);

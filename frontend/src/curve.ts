@@ -12,7 +12,7 @@ function svg(name: string, attributes: Record<string, string | number>, parent?:
 }
 
 export function metres(value: number): string {
-  return value < 1 ? `${Math.round(value * 100)} cm` : `${+value.toFixed(2)} m`;
+  return value < 0.995 ? `${Math.round(value * 100)} cm` : `${+value.toFixed(2)} m`;
 }
 
 export class Chart {

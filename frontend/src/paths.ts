@@ -3,7 +3,7 @@
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, MeshBasicMaterial } from "three";
 import type { Track } from "./track";
 
-const WIDTH = 0.014;
+const WIDTH = 0.01;
 const SMOOTH = 4; // frames before and after that a point of a path is averaged over: steps sway
 
 type Spot = [number, number, number];

@@ -240,8 +240,11 @@ export class Stage {
     let apart = 0, fx = 0, fy = 0;
     for (let frame = 1 - about.now; frame <= about.frames - about.now; frame += 5) {
       this.main.seek(frame);
+      this.truth?.seek(frame);
       const centre = this.middle();
       about.people.forEach((_, person) => {
+        const really = this.truth?.middle(person, hips);
+        if (really) apart = Math.max(apart, Math.hypot(really[0] - centre.x, really[1] - centre.y));
         const spot = this.main.middle(person, hips);
         if (!spot) return;
         [west, east] = [Math.min(west, spot[0]), Math.max(east, spot[0])];

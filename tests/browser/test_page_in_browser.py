@@ -73,9 +73,7 @@ def test_it_is_drawn_and_asks_for_nothing_but_itself(browser: chromium.Chromium,
 
 
 @pytest.mark.parametrize("key", ["f", "t", "s", "p", "b", "e", "2", "3"])
-def test_a_key_changes_the_picture_and_changes_it_back(
-    browser: chromium.Chromium, page: Path, key: str
-) -> None:
+def test_a_key_changes_the_picture_and_changes_it_back(browser: chromium.Chromium, page: Path, key: str) -> None:
     browser.open(page, "t=0.6")
     before = browser.picture(SCENE)
     browser.key(key)
@@ -149,9 +147,7 @@ def test_a_phone_shows_all_of_it(browser: chromium.Chromium, page: Path) -> None
     assert browser.evaluate("window.__mc.colors()") > 50  # pyright: ignore[reportOperatorIssue]
 
 
-def test_people_who_cannot_carry_a_body_are_bones(
-    browser: chromium.Chromium, walkers: Scene, tmp_path: Path
-) -> None:
+def test_people_who_cannot_carry_a_body_are_bones(browser: chromium.Chromium, walkers: Scene, tmp_path: Path) -> None:
     from dataclasses import replace
 
     plain = replace(walkers, skeleton=replace(MRT15, landmarks=("",) * 15))

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -115,3 +116,26 @@ def test_errors_that_are_unknown_show_as_such(capsys: pytest.CaptureFixture[str]
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].split() == ["error", "in", "mm", "after", "0.2", "s", "0.4", "s", "1", "s", "2", "s"]
     assert lines[2].split()[-2:] == ["-", "-"]
+
+
+def test_training_without_its_extra_names_the_command(
+    command, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setitem(sys.modules, "torch", None)
+    monkeypatch.delitem(sys.modules, "motioncast.training.loop", raising=False)
+    done = command("train", "somoformer-fast", "--data", tmp_path)
+    assert done.status == 1
+    assert 'pip install "motioncast[train]"' in done.err
+
+
+def test_plotting_without_its_extra_names_the_command(
+    command, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    line = '{"step": 10, "loss": 1.0, "validation": {"couple": 0.9}, "score": 0.9, "seconds": 1.0}\n'
+    (tmp_path / "metrics.jsonl").write_text(line, encoding="utf-8")
+    for name in [name for name in sys.modules if name.partition(".")[0] == "matplotlib"]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    done = command("plot", tmp_path)
+    assert done.status == 1
+    assert 'pip install "motioncast[plot]"' in done.err

@@ -41,6 +41,12 @@ def test_cards_come_back_from_json():
         ("{}", "expected at least"),
         (json.dumps({**json.loads(CARD.to_json()), "speed": 3}), "speed"),
         (json.dumps({**json.loads(CARD.to_json()), "skeleton": "dog"}), '"dog"; known'),
+        (json.dumps({**json.loads(CARD.to_json()), "horizon": "far"}), "\"horizon\" of the model card is 'far'; expected int"),
+        (json.dumps({**json.loads(CARD.to_json()), "fps": None}), "expected float or int"),
+        (json.dumps({**json.loads(CARD.to_json()), "radius": 3}), '"radius".*expected dict'),
+        (json.dumps({**json.loads(CARD.to_json()), "people": True}), '"people".*expected int'),
+        ("[" * 100_000, "not JSON"),
+        ("1" * 10_000, "not JSON"),
     ],
 )
 def test_texts_that_are_no_cards_are_refused(text, complaint):
@@ -76,6 +82,21 @@ def test_answers_that_are_not_finite_are_refused(value):
     samples[2, 9, 1, 14, 2] = value
     with pytest.raises(SceneError, match='"steps" answered with numbers that are not finite'):
         answer(samples=samples)
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "complaint"),
+    [
+        ("people", ("person 1", "eve"), 'is of "eve"; the history has person 1, person 2'),
+        ("weights", np.ones(2), "weights"),
+        ("carried", np.zeros(13, bool), "carried"),
+        ("guessed", np.zeros(15, bool), "guessed"),
+        ("radius_m", {"0.5": np.zeros((10, 15)), "0.9": np.zeros((15, 10))}, "radii"),
+    ],
+)
+def test_what_belongs_to_another_forecast_is_refused(field, value, complaint):
+    with pytest.raises(SceneError, match=complaint):
+        answer(**{field: value})
 
 
 def test_the_best_sample_is_the_most_probable_one():

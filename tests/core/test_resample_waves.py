@@ -110,7 +110,7 @@ def test_people_who_come_and_go_keep_their_velocity(after):
     scene = Scene(path, MRT15, 60, observed)
     changed = resample(scene, after)
     seen = changed.observed[:, 0, 0]
-    np.testing.assert_allclose(changed.positions[seen, 0, 0, 0], 1.5 * moments(changed, scene)[seen], atol=3e-3)
+    np.testing.assert_allclose(changed.positions[seen, 0, 0, 0], 1.5 * moments(changed, scene)[seen], atol=1e-5)
 
 
 def test_a_joint_is_seen_where_both_frames_around_it_are():

@@ -53,10 +53,7 @@ def test_positions_are_exact_to_half_a_millimetre(walkers: Scene) -> None:
     about, arrays = read(page_html(forecast, truth=walkers[30:]))
     exact = np.concatenate([walkers.positions[:30], forecast.best])
     assert np.abs(arrays["main/positions"] + about["origin"] - exact).max() <= 0.5e-3 + 1e-6
-    assert (
-        np.abs(arrays["truth/positions"][1:] + about["origin"] - walkers.positions[30:]).max()
-        <= 0.5e-3 + 1e-6
-    )
+    assert np.abs(arrays["truth/positions"][1:] + about["origin"] - walkers.positions[30:]).max() <= 0.5e-3 + 1e-6
     assert (about["now"], about["frames"], about["truth"]) == (30, 60, 31)
 
 

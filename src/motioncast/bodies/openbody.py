@@ -96,7 +96,8 @@ TIPS = {
 
 OPTIONAL = (
     "pelvis", "lower_spine", "middle_spine", "neck_base", "upper_neck", "head", "left_ear", "right_ear",
-    "left_foot", "right_foot", "left_toe", "right_toe", "left_hand", "right_hand", "left_fingers", "right_fingers",
+    "left_foot", "right_foot", "left_toe", "right_toe", "left_hand", "right_hand", "left_fingers",
+    "right_fingers",
 )  # fmt: skip
 """Landmarks that help where a skeleton has them."""
 
@@ -119,9 +120,7 @@ def load_body() -> Body:
             if name in TIPS:
                 axes[index] = _unit(heads[bones.index(f"{TIPS[name]}_{side}")] - heads[index])
         weights = file["weights"].astype(np.float32) / 255
-        return Body(
-            file["vertices"], file["faces"], bones, file["parents"], heads, axes, file["indices"], weights
-        )
+        return Body(file["vertices"], file["faces"], bones, file["parents"], heads, axes, file["indices"], weights)
 
 
 def bend(positions: np.ndarray, skeleton: Skeleton) -> Bent:
@@ -286,9 +285,7 @@ def _place_leg(pose: _Pose, side: str) -> None:
     side_on = down * sideways + (1 - down) * rotate(calf, LEFT)
     heading = _unit(rest * (1, 1, 0))
     neutral = np.cos(slope)[:, None] * heading - np.sin(slope)[:, None] * UP
-    foot = multiply(
-        _frame(side_on, direction, lead=1), conjugate(_frame(np.cross(UP, neutral), neutral, lead=1))
-    )
+    foot = multiply(_frame(side_on, direction, lead=1), conjugate(_frame(np.cross(UP, neutral), neutral, lead=1)))
     pose.put(f"foot_{letter}", ankle, foot)
     toes = pose.carried(f"foot_{letter}", pose.body.head(f"ball_{letter}"))
     lifted = toes[..., 2] - np.percentile(toes[..., 2], 10, axis=0)

@@ -13,6 +13,9 @@ def main() -> None:
 
         print(__version__)
         return
-    from motioncast.cli.app import run
+    try:
+        from motioncast.cli.app import run
 
-    sys.exit(run(arguments))
+        sys.exit(run(arguments))
+    except KeyboardInterrupt:  # while the parser was being loaded
+        sys.exit(130)

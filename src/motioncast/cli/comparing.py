@@ -20,12 +20,9 @@ def error_table(curves: Mapping[str, np.ndarray], fps: float) -> None:
         curves: Name of the forecaster -> error in metres at each frame.
         fps: Frames a second.
     """
-    told = [
-        seconds for seconds in MOMENTS_S if any(error_at(curve, seconds, fps) for curve in curves.values())
-    ]
+    told = [seconds for seconds in MOMENTS_S if any(error_at(curve, seconds, fps) for curve in curves.values())]
     rows = [
-        (name, *(_millimetres(error_at(curve, seconds, fps)) for seconds in told))
-        for name, curve in curves.items()
+        (name, *(_millimetres(error_at(curve, seconds, fps)) for seconds in told)) for name, curve in curves.items()
     ]
     table(("error in mm after", *(f"{seconds:g} s" for seconds in told)), rows)
 
@@ -44,9 +41,7 @@ def summary(forecast: Forecast) -> None:
     for person, name in enumerate(forecast.people):
         joints = seen[person]
         start = now.positions[-1, person, joints].mean(0)
-        goes = [
-            np.linalg.norm(forecast.best[frame, person, joints].mean(0) - start) for frame in told.values()
-        ]
+        goes = [np.linalg.norm(forecast.best[frame, person, joints].mean(0) - start) for frame in told.values()]
         rows.append((f"{name} goes", *(f"{distance:.2f} m" for distance in goes)))
     for level, radius in forecast.radius_m.items():
         means = [radius[frame, ~forecast.carried].mean() for frame in told.values()]

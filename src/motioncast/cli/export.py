@@ -41,9 +41,7 @@ def _write(files: tuple[Path, ...], out: Path, sample: int | None, reading: Read
     if len(files) == 1 and holds_forecast(files[0]):
         forecast = load_forecast(files[0])
         if sample is not None and not 1 <= sample <= len(forecast.samples):
-            raise InputError(
-                f"--sample {sample} came; {files[0]} holds {len(forecast.samples)}, counted from 1"
-            )
+            raise InputError(f"--sample {sample} came; {files[0]} holds {len(forecast.samples)}, counted from 1")
         return write_forecast(forecast, out, load_truth(files[0]), None if sample is None else sample - 1)
     if out.suffix.lower() == ".html":
         raise InputError("a page shows a forecast; make one first with: motioncast forecast")

@@ -48,9 +48,7 @@ def forecast(
     from motioncast.inference.registry import load
 
     with say.progress(f"{model} looks ahead") as progress:
-        answer = load(model).forecast(
-            scene[:now], horizon_s=seconds, samples=samples, seed=seed, progress=progress
-        )
+        answer = load(model).forecast(scene[:now], horizon_s=seconds, samples=samples, seed=seed, progress=progress)
     say.note(answer.warnings)
 
     if out is None and not json:

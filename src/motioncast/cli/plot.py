@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from motioncast.errors import MissingExtra
-
 
 def plot(run: Path, /, *, out: Path | None = None) -> None:
     """Draw the curves of a training run.
@@ -17,10 +15,5 @@ def plot(run: Path, /, *, out: Path | None = None) -> None:
     from motioncast.training.plot import plot as draw
 
     out = out or run / "curves.png"
-    try:
-        draw(run, out)
-    except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] != "matplotlib":
-            raise
-        raise MissingExtra("plotting", "plot") from None
+    draw(run, out)
     print(f"written: {out}")

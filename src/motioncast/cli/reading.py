@@ -19,12 +19,8 @@ from motioncast.errors import InputError
 class Reading:
     """How to read a file whose header lies or says nothing."""
 
-    up: Annotated[
-        str | None, Parameter(help="Axis that points up: x, y, z, or one with a minus for down.")
-    ] = None
-    unit: Annotated[
-        str | None, Parameter(help="Unit of length: m, cm, mm, inch, cmu, or a number of metres.")
-    ] = None
+    up: Annotated[str | None, Parameter(help="Axis that points up: x, y, z, or one with a minus for down.")] = None
+    unit: Annotated[str | None, Parameter(help="Unit of length: m, cm, mm, inch, cmu, or a number of metres.")] = None
     fps: Annotated[float | None, Parameter(help="Frames a second.")] = None
     map: Annotated[
         Path | None, Parameter(help='File of lines "joint = landmark" for joints that are not recognised.')

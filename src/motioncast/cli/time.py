@@ -63,15 +63,11 @@ def time(
         )
         return
     rows = [
-        (timing.people, f"{timing.median_ms:.2f}", f"{timing.q1_ms:.2f}", f"{timing.q3_ms:.2f}")
-        for timing in timings
+        (timing.people, f"{timing.median_ms:.2f}", f"{timing.q1_ms:.2f}", f"{timing.q3_ms:.2f}") for timing in timings
     ]
     table(("people", "median ms", "1st quartile", "3rd quartile"), rows)
     memory = peak_memory_mb()
-    print(
-        f"\n{model}, {threads} thread(s), {rounds} passes each"
-        + (f"; at most {memory:.0f} MB" if memory else "")
-    )
+    print(f"\n{model}, {threads} thread(s), {rounds} passes each" + (f"; at most {memory:.0f} MB" if memory else ""))
 
 
 def one_pass(model: str, people: int, threads: int) -> Callable[[], object]:

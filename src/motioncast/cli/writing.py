@@ -10,9 +10,7 @@ from motioncast.core.scene import Scene
 from motioncast.errors import OutputError
 
 
-def write_forecast(
-    forecast: Forecast, path: Path, truth: Scene | None = None, sample: int | None = None
-) -> list[Path]:
+def write_forecast(forecast: Forecast, path: Path, truth: Scene | None = None, sample: int | None = None) -> list[Path]:
     """Writes a forecast: all of it as npz or as a page (html), the continued motion in any other format.
 
     Args:

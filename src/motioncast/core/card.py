@@ -11,6 +11,9 @@ from motioncast.core.skeleton import Skeleton
 from motioncast.core.skeletons import SKELETONS
 from motioncast.errors import InputError
 
+_KINDS: dict[str, tuple[type, ...]] = {"str": (str,), "int": (int,), "float": (float, int), "bool": (bool,)}
+"""What JSON may give for a field, by its annotation; all others are mappings."""
+
 
 @dataclass(frozen=True, slots=True)
 class ModelCard:
@@ -78,7 +81,7 @@ class ModelCard:
         """
         try:
             values = json.loads(text)
-        except json.JSONDecodeError as error:
+        except (ValueError, RecursionError) as error:
             raise InputError(f"the model card is not JSON ({error}); expected the card that training writes") from None
         known = {entry.name for entry in fields(cls)}
         needed = {"name", "system", "task", "skeleton", "history", "horizon", "fps"}
@@ -87,4 +90,11 @@ class ModelCard:
             raise InputError(f"the model card has unknown or missing entries ({odd}); expected at least {sorted(needed)}")
         if values["skeleton"] not in (*SKELETONS, "any"):
             raise InputError(f'the model card names the skeleton "{values["skeleton"]}"; known: {sorted(SKELETONS)}')
+        for entry in fields(cls):
+            kinds = _KINDS.get(str(entry.type), (dict,))
+            if entry.name in values and type(values[entry.name]) not in kinds:
+                raise InputError(
+                    f'the entry "{entry.name}" of the model card is {values[entry.name]!r:.40}; '
+                    f"expected {' or '.join(kind.__name__ for kind in kinds)}"
+                )
         return cls(**values)

@@ -55,13 +55,26 @@ class Forecast:
             )
         if not np.isfinite(samples).all():
             raise SceneError(f'model "{self.card.name}" answered with numbers that are not finite')
-        count = len(samples)
+        for person in self.people:
+            if person not in self.history.people:
+                raise SceneError(f'the forecast is of "{person}"; the history has {", ".join(self.history.people)}')
+        count, frames = samples.shape[:2]
         weights = np.full(count, 1 / count, np.float32) if self.weights is None else np.asarray(self.weights)
+        carried = np.zeros(joints, bool) if self.carried is None else self.carried
+        guessed = np.zeros(len(self.people), bool) if self.guessed is None else self.guessed
+        for name, given, wanted in (
+            ("weights", weights, (count,)),
+            ("carried joints", carried, (joints,)),
+            ("guessed people", guessed, (len(self.people),)),
+            *(("error radii", radius, (frames, joints)) for radius in self.radius_m.values()),
+        ):
+            if np.shape(given) != wanted:
+                raise SceneError(f"the {name} of the forecast have shape {np.shape(given)}; expected {wanted}")
         set_field = object.__setattr__
         set_field(self, "samples", samples)
         set_field(self, "weights", weights)
-        set_field(self, "carried", np.zeros(joints, bool) if self.carried is None else self.carried)
-        set_field(self, "guessed", np.zeros(len(self.people), bool) if self.guessed is None else self.guessed)
+        set_field(self, "carried", carried)
+        set_field(self, "guessed", guessed)
 
     @property
     def fps(self) -> float:

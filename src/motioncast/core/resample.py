@@ -22,7 +22,7 @@ def resample(scene: Scene, fps: float) -> Scene:
     """The scene at another frame rate, anchored at its last frame.
 
     A joint is observed in a new frame where both frames around that moment observed it; gaps are bridged by
-    straight lines before filtering and stay masked.
+    straight lines before filtering and stay masked, and who comes or goes has the same exact ends.
 
     Args:
         scene: Any scene.
@@ -53,11 +53,24 @@ def resample(scene: Scene, fps: float) -> Scene:
         rotations = slerp(rotations[before], rotations[after], (times - before)[:, None, None]).astype(np.float32)
     return replace(
         scene,
-        positions=sample(bridge(scene.positions, scene.observed), times, step).astype(np.float32),
+        positions=sample(_continued(scene), times, step).astype(np.float32),
         observed=scene.observed[before] & scene.observed[after],
         rotations=rotations,
         fps=fps,
     )
+
+
+def _continued(scene: Scene) -> np.ndarray:
+    """Positions whose gaps are bridged, and which go on by point reflection before and after each joint is seen."""
+    positions, observed = bridge(scene.positions, scene.observed), scene.observed
+    time = np.arange(scene.frames)
+    for person, joint in np.argwhere(~observed.all(0) & observed.any(0)):
+        first, last = np.flatnonzero(observed[:, person, joint])[[0, -1]]
+        end = np.clip(time, first, last)
+        mirror = np.clip(2 * end - time, first, last)
+        track = positions[:, person, joint]
+        positions[:, person, joint] = np.where((time == end)[:, None], track, 2 * track[end] - track[mirror])
+    return positions
 
 
 def sample(values: np.ndarray, times: np.ndarray, step: float = 1.0) -> np.ndarray:

@@ -36,6 +36,9 @@ suffixes = (".bvh",)
 MAX_JOINTS = 2000
 """Most joints of one file."""
 
+MAX_NUMBER = 1e12
+"""No coordinate or angle reaches this; what does is taken for damage."""
+
 _CHANNEL = {f"{axis}{kind}".lower(): (kind[0], axis) for axis in "XYZ" for kind in ("position", "rotation")}
 _SLIDE_M = 1e-3
 _WRITTEN_ORDER = "zxy"
@@ -105,7 +108,7 @@ def read(
     return Scene(
         world.points(positions)[:, None],
         skeleton,
-        fps or header_fps,
+        header_fps if fps is None else fps,
         people=(Path(path).stem,),
         rotations=world.rotations(rotations).astype(np.float32)[:, None] if rigid else None,
         offsets=world.points(rigid_offsets).astype(np.float32)[None] if rigid else None,
@@ -212,7 +215,7 @@ def _number(word: str, path: str | Path, line: int) -> float:
         value = float(word) if word.isascii() and "_" not in word else np.nan
     except ValueError:
         value = np.nan
-    if not np.isfinite(value):
+    if not abs(value) < MAX_NUMBER:
         raise FormatError(path, f'"{word[:40]}" where a finite number was expected', line)
     return value
 
@@ -265,7 +268,7 @@ def _motion(lines: list[str], start: int, columns: int, path: str | Path) -> tup
         values = np.loadtxt([lines[row] for row in rows], np.float64, comments=None, ndmin=2)
     except ValueError:
         values = None
-    if values is None or values.shape != (count, columns) or not np.isfinite(values).all():
+    if values is None or values.shape != (count, columns) or not (np.abs(values) < MAX_NUMBER).all():
         _find_bad_row(lines, rows, columns, path)
     assert values is not None
     return _rate(interval[1], seconds), values

@@ -154,7 +154,8 @@ def read_npz(path: str | Path) -> dict[str, np.ndarray]:
     except FormatError:
         raise
     except Exception as error:  # zipfile and numpy raise a dozen kinds on damaged bytes; all mean one thing
-        raise FormatError(path, f"is damaged ({error}); expected an npz file as numpy.savez writes it") from None
+        reason = " ".join(str(error).split())[:80]  # zipfile's can hold whole arrays
+        raise FormatError(path, f"is damaged ({reason}); expected an npz file as numpy.savez writes it") from None
 
 
 def _read_member(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path) -> np.ndarray:

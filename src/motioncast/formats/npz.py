@@ -225,7 +225,7 @@ def _save(path: str | Path, arrays: Mapping[str, np.ndarray], meta: Mapping[str,
 
 def _entry(path: str | Path, meta: Mapping[str, Any], name: str, kind: type) -> Any:
     value = meta.get(name)
-    if kind is float and type(value) is int:
+    if kind is float and type(value) is int and abs(value) < 1 << 53:
         return float(value)
     if type(value) is not kind:
         raise FormatError(path, f'the entry "{name}" of "meta" is {value!r:.40}; expected a {kind.__name__}')

@@ -42,6 +42,8 @@ POSSIBLE_STATURE_M = (0.4, 3.0)
 """No body outside is taken for a person's, whatever the file or the user says."""
 FARTHEST_M = 10_000.0
 """Positions farther from the origin lose millimetres in float32 and are taken for damage."""
+FARTHEST_UNITS = 1e15
+"""No unit makes a person's place of a coordinate beyond; its square would overflow."""
 
 # rows: the new x, y, z in terms of the old axes; each is a proper rotation
 _TURNS: dict[str, np.ndarray] = {
@@ -202,6 +204,9 @@ def settle(
         InputError: If ``up`` or ``unit`` is unknown.
         SceneError: If no unit makes a person of the body, or the given one does not.
     """
+    largest = max(float(np.abs(points).max(initial=0)) for points in (positions, () if rest is None else rest))
+    if not largest < FARTHEST_UNITS:
+        raise SceneError(f"{path}: a coordinate is {largest:.3g}, which is no place in any unit; mend the file")
     size = stature(positions, observed, skeleton)
     guesses = []
     if unit is None:

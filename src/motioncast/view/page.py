@@ -119,8 +119,8 @@ def _hash(text: str) -> str:
 def _check(forecast: Forecast, truth: Scene) -> None:
     if truth.skeleton.names != forecast.skeleton.names:
         raise SceneError(
-            f"the truth has other joints than the forecast ({len(truth.skeleton)} and {len(forecast.skeleton)}); "
-            "give it on the skeleton of the history"
+            f'the truth is on the skeleton "{truth.skeleton.label}" and the forecast on '
+            f'"{forecast.skeleton.label}"; give the truth on the skeleton of the history'
         )
     if not np.isclose(truth.fps, forecast.fps):
         raise SceneError(
@@ -181,6 +181,7 @@ def _contents(
     feet = [skeleton.find(f"{side}_{place}") for side in SIDES for place in ("ankle", "foot", "toe")]
     ends = [skeleton.find(f"{side}_{place}") for side in SIDES for place in ("wrist", "ankle")]
     ends.append(skeleton.find("head"))
+    guessed = {person for person, guess in zip(forecast.people, forecast.guessed, strict=True) if guess}
     card = forecast.card
     about = {
         "schema": "motioncast.page/1",
@@ -200,8 +201,7 @@ def _contents(
             "ends": [joint for joint in ends if joint is not None],
         },
         "people": [
-            {"id": person, "guessed": person in forecast.people and bool(forecast.guessed[forecast.people.index(person)])}
-            for person in history.people
+            {"id": person, "guessed": person in guessed} for person in history.people
         ],
         "levels": list(forecast.radius_m),
         "curves": drawn,
@@ -230,8 +230,8 @@ class _Block:
 
 
 def _add_bodies(
-    block: _Block, tracks: Mapping[str, tuple[np.ndarray, np.ndarray, int]], skeleton: Skeleton, origin: np.ndarray,
-    scale: float,
+    block: _Block, tracks: Mapping[str, tuple[np.ndarray, np.ndarray, int]], skeleton: Skeleton,
+    origin: np.ndarray, scale: float,
 ) -> int:  # fmt: skip
     """Adds mesh and poses; the number of bones, 0 where the skeleton cannot carry a body."""
     try:
@@ -248,7 +248,7 @@ def _add_bodies(
     block.add("body/scales", np.clip(poses["main"].scales, 0, 10), 1e-3)
     for name, bent in poses.items():
         first = tracks[name][2]
-        there = tracks[name][1].all(-1)[first:, :, None, None]
+        there = np.asarray(tracks[name][1].all(-1))[first:, :, None, None]
         rotations = np.where(there, _smooth_signs(bent)[first:], [1, 0, 0, 0])
         block.add(f"{name}/rotations", rotations, 1 / 4096)
         block.add(f"{name}/heads", np.where(there, bent.heads[first:] - origin, 0), scale)
@@ -274,9 +274,7 @@ def _filled(positions: np.ndarray, seen: np.ndarray) -> np.ndarray:
     return filled
 
 
-def _curves(
-    forecast: Forecast, truth: Scene | None, others: Curves, ahead: slice
-) -> tuple[list[dict[str, Any]], str]:
+def _curves(forecast: Forecast, truth: Scene | None, others: Curves, ahead: slice) -> tuple[list[dict[str, Any]], str]:
     """What is drawn beside the scene: errors where the truth is known, else the error radii."""
 
     def curve(name: str, kind: str, times: np.ndarray, errors: np.ndarray) -> dict[str, Any]:
@@ -314,8 +312,8 @@ def _curves(
 def joint_errors(forecast: Forecast, truth: Scene) -> tuple[np.ndarray, np.ndarray]:
     """Times in seconds and the mean error in metres of the most probable sample at each.
 
-    The mean runs over people and joints that the truth shows, joints that were only carried along left out; it is
-    NaN where there are none.
+    The mean runs over people and joints that the truth shows, joints that were only carried along left out;
+    it is NaN where there are none.
     """
     frames = min(truth.frames, forecast.samples.shape[1])
     people = [person for person in forecast.people if person in truth.people]

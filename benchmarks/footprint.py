@@ -1,6 +1,6 @@
 """What motioncast costs to start: the import, a whole forecast process, the installed size.
 
-    python benchmarks/footprint.py
+python benchmarks/footprint.py
 """
 
 from __future__ import annotations

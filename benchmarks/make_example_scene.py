@@ -1,6 +1,6 @@
 """Write the example scene that ships: six seconds of the dancing couple, from a take that no model was trained on.
 
-    python benchmarks/make_example_scene.py --data DIR
+python benchmarks/make_example_scene.py --data DIR
 """
 
 from __future__ import annotations

@@ -35,16 +35,13 @@ def table(benchmark: str, entries: list[dict[str, Any]]) -> str:
     moments = [row for row in entries[0]["rows"] if row["unit"] != "1"]
     heads = [f"{row['horizon_s']:.2f} s" for row in moments]
     lines = [
-        f"`{benchmark}`: error in {moments[0]['unit']} after so long. {moments[0]['n']} windows: "
-        f"{entries[0]['data']}.",
+        f"`{benchmark}`: error in {moments[0]['unit']} after so long. {moments[0]['n']} windows: {entries[0]['data']}.",
         "",
         f"| model | {' | '.join(heads)} | over standing still |",
         "|---|" + "---:|" * (len(heads) + 1),
     ]
     for entry in entries:
-        cells = [
-            f"{row['value']:.3f}" if row["unit"] == "1" else f"{row['value']:.0f}" for row in entry["rows"]
-        ]
+        cells = [f"{row['value']:.3f}" if row["unit"] == "1" else f"{row['value']:.0f}" for row in entry["rows"]]
         lines.append(f"| `{entry['model']}` | {' | '.join(cells)} |")
     return "\n".join([*lines, "", f"Printed by `{entries[0]['command']}` and the like.", ""])
 

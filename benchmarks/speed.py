@@ -1,7 +1,7 @@
 """How fast the models and the readers are: medians, interleaved in one process, one thread.
 
-    python benchmarks/speed.py                      # graphs; with the train extra also torch
-    python benchmarks/speed.py --data DIR           # readers too
+python benchmarks/speed.py                      # graphs; with the train extra also torch
+python benchmarks/speed.py --data DIR           # readers too
 """
 
 from __future__ import annotations

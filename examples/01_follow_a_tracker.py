@@ -28,9 +28,7 @@ def main(path: str) -> None:
         # in the first second a simple guess answers, and says so
         how = "guessed" if forecast.guessed.any() else "forecast"
         ahead = forecast.best[-1].mean((0, 1))
-        print(
-            f"{number / take.fps:5.2f} s: {how}, in {forecast.horizon_s:.1f} s they are near {ahead.round(2)}"
-        )
+        print(f"{number / take.fps:5.2f} s: {how}, in {forecast.horizon_s:.1f} s they are near {ahead.round(2)}")
 
 
 if __name__ == "__main__":

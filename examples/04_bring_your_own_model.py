@@ -40,9 +40,7 @@ class FadingVelocity:
     ) -> mc.Forecast:
         people = [name for row, name in enumerate(scene.people) if scene.observed[-1, row].any()]
         if not people:
-            raise SceneError(
-                "nobody is seen in the last frame; end the scene with a frame that shows somebody"
-            )
+            raise SceneError("nobody is seen in the last frame; end the scene with a frame that shows somebody")
         recent = scene[-round(0.2 * scene.fps) - 1 :].select(people)
         poses = bridge(recent.positions, recent.observed).astype(np.float64)  # what was not seen is filled in
         velocity = (poses[-1] - poses[0]).mean(1, keepdims=True) * scene.fps / max(1, len(poses) - 1)

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from motioncast.formats.load import load_scene, save_scene
+
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("[0-9]*.py"))
 SCENE = Path(str(resources.files("motioncast"))) / "data" / "salsa.npz"
 
@@ -27,7 +29,11 @@ def test_example(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     main = runpy.run_path(str(path))["main"]
-    main(*([] if path.stem.startswith("04") else [str(SCENE)]))
+    scene = SCENE
+    if path.stem.startswith("01"):  # a forecast a frame: a second more than the model's history is enough
+        scene = tmp_path / "short.npz"
+        save_scene(load_scene(SCENE)[:61], scene)
+    main(*([] if path.stem.startswith("04") else [str(scene)]))
     assert SAYS[path.stem] in capsys.readouterr().out
     assert LEAVES.get(path.stem, set()) <= {entry.name for entry in tmp_path.iterdir()}
 

@@ -13,9 +13,7 @@ HEAVY = ("numpy", "onnxruntime", "torch", "lightning_fabric", "matplotlib", "cyc
 def loaded_after(code: str) -> set[str]:
     """Names of all modules that a fresh interpreter has loaded after this code, warnings being errors."""
     probe = f"import sys\n{code}\nprint('\\n' + ' '.join(sys.modules))"
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", probe], capture_output=True, text=True, check=True
-    )
+    done = subprocess.run([sys.executable, "-W", "error", "-c", probe], capture_output=True, text=True, check=True)
     return set(done.stdout.splitlines()[-1].split())
 
 

@@ -24,9 +24,7 @@ NAMES = [
 
 
 def test_public_names() -> None:
-    assert sorted(motioncast.__all__) == sorted(NAMES), (
-        "a public name came or went: change this list and CHANGELOG.md"
-    )
+    assert sorted(motioncast.__all__) == sorted(NAMES), "a public name came or went: change this list and CHANGELOG.md"
 
 
 def test_every_public_name_can_be_had() -> None:

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from motioncast.benchmarks.calibration import held, radii
 from motioncast.benchmarks.protocols import BENCHMARKS, Protocol, manifest, windows_of
 from motioncast.benchmarks.run import SIMPLE_GUESSES, evaluate, forecast_windows, score
@@ -53,9 +54,7 @@ def test_order_of_windows_and_people_changes_no_figure() -> None:
         windows.positions[order][:, :, ::-1], windows.observed[order][:, :, ::-1],
         tuple(windows.takes[index] for index in order), tuple(windows.starts[index] for index in order), 15,
     )  # fmt: skip
-    for one, other in zip(
-        score(TOY, windows, answers), score(TOY, shuffled, answers[order][:, :, ::-1]), strict=True
-    ):
+    for one, other in zip(score(TOY, windows, answers), score(TOY, shuffled, answers[order][:, :, ::-1]), strict=True):
         assert one.value == pytest.approx(other.value)
 
 

@@ -50,9 +50,7 @@ def test_a_mistake_is_one_sentence_and_status_2(arguments: list[str], says: str,
         (ZeroDivisionError("division by zero"), 1, "a fault of motioncast"),
     ],
 )
-def test_exit_status(
-    error: BaseException, status: int, says: str, command, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_exit_status(error: BaseException, status: int, says: str, command, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail() -> None:
         raise error
 

@@ -104,9 +104,7 @@ def test_a_folder_without_the_data_set(command, tmp_path: Path) -> None:
 
 @pytest.mark.data
 def test_evaluate(command, shared: Path) -> None:
-    answer = command("evaluate", "zero-velocity", "somof-strangers", "--data", shared, "--json").answer(
-        "result"
-    )
+    answer = command("evaluate", "zero-velocity", "somof-strangers", "--data", shared, "--json").answer("result")
     assert answer["rows"][-1]["value"] == pytest.approx(1.0, abs=1e-6)
     assert answer["commit"] == commit()
 
@@ -118,9 +116,7 @@ def test_errors_that_are_unknown_show_as_such(capsys: pytest.CaptureFixture[str]
     assert lines[2].split()[-2:] == ["-", "-"]
 
 
-def test_training_without_its_extra_names_the_command(
-    command, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_training_without_its_extra_names_the_command(command, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setitem(sys.modules, "torch", None)
     monkeypatch.delitem(sys.modules, "motioncast.training.loop", raising=False)
     done = command("train", "somoformer-fast", "--data", tmp_path)
@@ -128,9 +124,7 @@ def test_training_without_its_extra_names_the_command(
     assert 'pip install "motioncast[train]"' in done.err
 
 
-def test_plotting_without_its_extra_names_the_command(
-    command, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_plotting_without_its_extra_names_the_command(command, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     line = '{"step": 10, "loss": 1.0, "validation": {"couple": 0.9}, "score": 0.9, "seconds": 1.0}\n'
     (tmp_path / "metrics.jsonl").write_text(line, encoding="utf-8")
     for name in [name for name in sys.modules if name.partition(".")[0] == "matplotlib"]:

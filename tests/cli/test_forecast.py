@@ -20,14 +20,10 @@ def test_writes_the_forecast_beside_nothing_else(walk: Path, command) -> None:
     assert load_truth("walk.forecast.npz") is None
 
 
-def test_from_a_moment_of_the_take_it_is_compared_with_what_followed(
-    walk: Path, walkers: Scene, command
-) -> None:
+def test_from_a_moment_of_the_take_it_is_compared_with_what_followed(walk: Path, walkers: Scene, command) -> None:
     done = command("forecast", walk, "--at", "1", "--model", "zero-velocity", "--seconds", "1")
     assert done.status == 0
-    (line,) = [
-        line for line in done.out.splitlines() if line.startswith("zero-velocity ") and "person" not in line
-    ]
+    (line,) = [line for line in done.out.splitlines() if line.startswith("zero-velocity ") and "person" not in line]
     errors = [int(number) for number in line.split()[1:]]
     # walking at 1 m/s, standing still is wrong by the way gone (arms add a little)
     np.testing.assert_allclose(errors, [200, 400, 1000], atol=15)
@@ -47,9 +43,7 @@ def test_json_is_one_object_and_writes_no_file(walk: Path, command) -> None:
 
 
 def test_json_names_the_files_that_were_asked_for(walk: Path, command) -> None:
-    answer = command("forecast", walk, "--model", "zero-velocity", "--json", "--out", "next.npz").answer(
-        "forecast"
-    )
+    answer = command("forecast", walk, "--model", "zero-velocity", "--json", "--out", "next.npz").answer("forecast")
     assert answer["files"] == ["next.npz"]
     assert Path("next.npz").exists()
 
@@ -84,10 +78,7 @@ def test_a_folder_that_is_not_there(walk: Path, command) -> None:
 
 
 def test_the_motion_continued_in_another_format(walk: Path, command) -> None:
-    assert (
-        command("forecast", walk, "--model", "zero-velocity", "--seconds", "1", "--out", "next.csv").status
-        == 0
-    )
+    assert command("forecast", walk, "--model", "zero-velocity", "--seconds", "1", "--out", "next.csv").status == 0
     assert command("forecast", walk, "--model", "zero-velocity", "--seconds", "1").status == 0
     done = command("export", "walk.forecast.npz", "--to", "bvh")
     assert done.status == 0

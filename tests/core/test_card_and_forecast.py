@@ -10,7 +10,7 @@ import pytest
 
 from motioncast.core.card import ModelCard
 from motioncast.core.forecast import Forecast
-from motioncast.core.kinematics import fit_rotations, forward
+from motioncast.core.kinematics import fit_rotations
 from motioncast.core.skeletons import MRT15
 from motioncast.errors import InputError, SceneError
 from motioncast.testing import walkers
@@ -41,7 +41,10 @@ def test_cards_come_back_from_json():
         ("{}", "expected at least"),
         (json.dumps({**json.loads(CARD.to_json()), "speed": 3}), "speed"),
         (json.dumps({**json.loads(CARD.to_json()), "skeleton": "dog"}), '"dog"; known'),
-        (json.dumps({**json.loads(CARD.to_json()), "horizon": "far"}), "\"horizon\" of the model card is 'far'; expected int"),
+        (
+            json.dumps({**json.loads(CARD.to_json()), "horizon": "far"}),
+            "\"horizon\" of the model card is 'far'; expected int",
+        ),
         (json.dumps({**json.loads(CARD.to_json()), "fps": None}), "expected float or int"),
         (json.dumps({**json.loads(CARD.to_json()), "radius": 3}), '"radius".*expected dict'),
         (json.dumps({**json.loads(CARD.to_json()), "people": True}), '"people".*expected int'),
@@ -70,7 +73,9 @@ def test_times_begin_one_frame_after_now():
     assert (forecast.fps, forecast.skeleton) == (15.0, MRT15)
 
 
-@pytest.mark.parametrize("shape", [(10, 2, 15, 3), (3, 10, 1, 15, 3), (3, 10, 2, 13, 3), (3, 10, 2, 15, 2), (0, 10, 2, 15, 3)])
+@pytest.mark.parametrize(
+    "shape", [(10, 2, 15, 3), (3, 10, 1, 15, 3), (3, 10, 2, 13, 3), (3, 10, 2, 15, 2), (0, 10, 2, 15, 3)]
+)
 def test_samples_of_another_shape_are_refused(shape):
     with pytest.raises(SceneError, match=r"forecast has shape .*expected \(sample, time, 2 people, 15 joints, 3\)"):
         answer(samples=np.zeros(shape))

@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
@@ -75,6 +75,7 @@ def test_forward_agrees_with_a_naive_walk_over_matrices():
 
 
 @given(st.integers(0, 10_000), st.sampled_from([MRT15, SMPL22]), st.floats(0.1, 2.0))
+@settings(max_examples=10)
 def test_a_rigid_body_comes_back_without_pivots_or_sliding(seed, skeleton, reach):
     scene = bare(turning(seed, skeleton, reach=reach))
     fitted = fit_rotations(scene)
@@ -85,6 +86,7 @@ def test_a_rigid_body_comes_back_without_pivots_or_sliding(seed, skeleton, reach
 
 
 @given(st.integers(0, 10_000), st.booleans())
+@settings(max_examples=10)
 def test_the_seam_has_no_step_and_lengths_go_on(seed, known):
     whole = turning(seed, SMPL22, reach=0.7)
     history = whole[:25] if known else fit_rotations(bare(whole)[:25])

@@ -88,6 +88,14 @@ MAKERS: dict[str, tuple[list[str], str, str, str, str]] = {
         sided("Hips, *UpLeg, *Leg, *Foot, *ToeBase, Spine, Spine1, Neck, Head, *Shoulder, *Arm, *ForeArm, *Hand, "
               "*HandThumb, *_Wrist_End"),
         "Leg Foot Arm ForeArm Hand", "Hips", "Neck", "Head"),
+    "unity": (
+        sided("Hips, *UpperLeg, *LowerLeg, *Foot, *Toes, Spine, Chest, UpperChest, Neck, Head, *Shoulder, *UpperArm, "
+              "*LowerArm, *Hand"),
+        "LowerLeg Foot UpperArm LowerArm Hand", "Hips", "Neck", "Head"),
+    "rokoko": (
+        sided("Hips, Spine1, Spine2, Spine3, Spine4, Neck, Head, *Shoulder, *Arm, *ForeArm, *Hand, *Thigh, *Shin, "
+              "*Foot, *Toe"),
+        "Shin Foot Arm ForeArm Hand", "Hips", "Neck", "Head"),
     "acclaim": (list(CMU31.names), "femur tibia clavicle humerus wrist", "root", "lowerneck", "head"),
 }  # fmt: skip
 
@@ -191,7 +199,10 @@ def test_named_joints_win():
 
 @pytest.mark.parametrize(
     ("named", "complaint"),
-    [({"tail": "pelvis"}, '"tail", which is not in Hips, Spine'), ({"Hips": "tail"}, 'landmark "tail"; use one of pelvis')],
+    [
+        ({"tail": "pelvis"}, '"tail", which is not in Hips, Spine'),
+        ({"Hips": "tail"}, 'landmark "tail"; use one of pelvis'),
+    ],
 )
 def test_maps_with_unknown_words_are_refused(named, complaint):
     with pytest.raises(SkeletonError, match=complaint):

@@ -9,9 +9,7 @@ from motioncast.errors import SkeletonError
 
 SIDES = ("Left", "Right")
 HUMANOID = ["Hips", "Spine", "Spine1", "Spine2", "Neck", "Head"] + [
-    side + part
-    for side in SIDES
-    for part in ("Shoulder", "Arm", "ForeArm", "Hand", "UpLeg", "Leg", "Foot", "ToeBase")
+    side + part for side in SIDES for part in ("Shoulder", "Arm", "ForeArm", "Hand", "UpLeg", "Leg", "Foot", "ToeBase")
 ]
 LISTS = {
     "mixamo": [f"mixamorig:{name}" for name in [*HUMANOID, "HeadTop_End", "LeftToe_End", "RightToe_End"]],

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from motioncast.core.scene import Scene
 from motioncast.core.skeletons import recognise
 from motioncast.datasets import cmu
@@ -116,5 +117,6 @@ def test_known_defects_are_masked(shared: Path) -> None:
     assert not scenes["60_15"].observed[732].any()
     assert scenes["61_15"].observed.all()
     assert not scenes["05_16"].observed[465].any()
-    raw = next(row for row in csv.DictReader((shared / "cmu" / "index.csv").read_text(encoding="utf-8").splitlines()) if row["name"] == "16_15")
+    index = (shared / "cmu" / "index.csv").read_text(encoding="utf-8")
+    raw = next(row for row in csv.DictReader(index.splitlines()) if row["name"] == "16_15")
     assert scenes["16_15"].frames == int(raw["frames"]) - 2

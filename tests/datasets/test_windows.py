@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from motioncast.core.scene import Scene
 from motioncast.core.skeletons import MRT15
 from motioncast.datasets.windows import cut, every

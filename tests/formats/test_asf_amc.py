@@ -1,11 +1,13 @@
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from motioncast.errors import FormatError, MotioncastError
 from motioncast.formats.asf_amc import bone_ends, parse_amc, parse_asf, read_asf_amc
 
@@ -102,6 +104,13 @@ def test_line_reader_agrees_with_column_reader() -> None:
     shuffled = AMC.replace("thigh 0 0 0\nshin 90", "shin 90\nthigh 0 0 0")
     np.testing.assert_array_equal(positions(amc=shuffled), positions())
     np.testing.assert_array_equal(positions(amc=AMC.replace("\n", "\r\n")), positions())
+    np.testing.assert_array_equal(positions(amc=AMC.replace("\n2\n", "\n\n2\n") + "\n\n"), positions())
+
+
+def test_what_stands_for_a_frame_number_is_looked_at() -> None:
+    third = AMC[AMC.index("2\n") :].replace("2\n", "third\n", 1)
+    with pytest.raises(FormatError, match='bone "third" is not in the skeleton'):
+        positions(amc=AMC + third)
 
 
 @pytest.mark.parametrize(
@@ -113,9 +122,12 @@ def test_line_reader_agrees_with_column_reader() -> None:
         ("shin 90", "shin nan", 11, "finite"),
         ("shin 90", "thigh 0 0 0", 11, "twice"),
         ("shin 90\n", "", 10, "cut off"),
+        ("root 0 10 0 0 0 0\n", "", 7, 'without a "root" line'),
+        ("\n1\n", "\nroot\n1\n", 4, "before the first frame number"),
+        (AMC[AMC.index("1\n") :], "", None, "no frames"),
     ],
 )
-def test_damaged_motion_names_the_line(old: str, new: str, line: int, words: str) -> None:
+def test_damaged_motion_names_the_line(old: str, new: str, line: int | None, words: str) -> None:
     with pytest.raises(FormatError, match=words) as caught:
         positions(amc=AMC.replace(old, new))
     assert caught.value.line == line
@@ -130,6 +142,12 @@ def test_damaged_motion_names_the_line(old: str, new: str, line: int, words: str
         ("thigh shin", "thigh shin foot", "no bone data"),
         ("dof rx\n", "dof rq\n", "degrees of freedom"),
         (":hierarchy", ":nothing", "hierarchy"),
+        ("    thigh shin\n", "", 'bone "shin" is not in the hierarchy'),
+        ("root thigh", "root thigh shin", 'bone "shin" has two parents'),
+        ("name shin", "name thigh", 'bone "thigh" comes twice'),
+        ("name shin", "name", "number of values"),
+        ("name shin", "", "ends without name"),
+        ("dof rx\n  end", "dof rx", 'no "end"'),
     ],
 )
 def test_damaged_skeleton(old: str, new: str, words: str) -> None:
@@ -139,18 +157,18 @@ def test_damaged_skeleton(old: str, new: str, words: str) -> None:
 
 @given(st.integers(0, len(AMC) - 1), st.text(max_size=3), st.integers(0, 30))
 def test_any_damage_gives_one_clear_error(place: int, put: str, cut: int) -> None:
+    error = None
     try:
         positions(amc=AMC[:place] + put + AMC[place + cut :])
-    except MotioncastError as error:
-        assert "\n" not in str(error)
+    except MotioncastError as caught:
+        error = caught
+    assert "\n" not in str(error)
 
 
 @given(st.integers(0, len(ASF) - 1), st.text(max_size=3), st.integers(0, 60))
 def test_any_damage_of_the_skeleton_gives_one_clear_error(place: int, put: str, cut: int) -> None:
-    try:
+    with suppress(MotioncastError):
         parse_asf(ASF[:place] + put + ASF[place + cut :], "toy.asf")
-    except MotioncastError:
-        pass
 
 
 def test_scene_is_z_up_and_says_that_the_rate_is_assumed(tmp_path: Path) -> None:

@@ -39,7 +39,8 @@ ASF = """# a made-up body
 """
 
 BONES = {  # parent, direction, length: a person in CMU's unit
-    "lhipjoint": ("root", "0.8 -0.6 0", 2.0), "lfemur": ("lhipjoint", "0 -1 0", 7.4), "ltibia": ("lfemur", "0 -1 0", 7.2),
+    "lhipjoint": ("root", "0.8 -0.6 0", 2.0), "lfemur": ("lhipjoint", "0 -1 0", 7.4),
+    "ltibia": ("lfemur", "0 -1 0", 7.2),
     "rhipjoint": ("root", "-0.8 -0.6 0", 2.0), "rfemur": ("rhipjoint", "0 -1 0", 7.4),
     "rtibia": ("rfemur", "0 -1 0", 7.2), "thorax": ("root", "0 1 0", 8.0), "lowerneck": ("thorax", "0 1 0", 1.5),
     "head": ("lowerneck", "0 1 0", 3.0),
@@ -153,6 +154,17 @@ def test_suffixes_in_capitals(tmp_path):
     assert load_scene(amc).frames == 3
 
 
+@pytest.mark.parametrize(("joint", "other"), [("left_hip", "right_hip"), ("right_hip", "left_hip")])
+def test_a_map_wins_over_the_landmarks_of_a_scene_file(tmp_path, joint, other):
+    save_scene(walkers(people=1, frames=3), tmp_path / "a.npz")
+    skeleton = load_scene(tmp_path / "a.npz", named={joint: other}).skeleton
+    assert skeleton.find(other) == skeleton.index(joint)
+    assert skeleton.find(joint) is None
+    assert skeleton.find("neck") == skeleton.index("neck")
+    with pytest.raises(InputError, match='"tail"'):
+        load_scene(tmp_path / "a.npz", named={"tail": "neck"})
+
+
 def test_a_map_names_unknown_joints(tmp_path):
     one, _ = two_takes(tmp_path)
     text = one.read_text(encoding="utf-8").replace("left_knee", "hinge")
@@ -178,7 +190,7 @@ def test_a_damaged_map_names_its_line(tmp_path, text, line):
 
 @pytest.mark.parametrize("name", ["a", "a.", "a.docx", ".npz.zip"])
 def test_unknown_suffixes_to_write_are_refused(tmp_path, name):
-    with pytest.raises(OutputError, match="unknown; use .npz"):
+    with pytest.raises(OutputError, match=r"unknown; use \.npz"):
         save_scene(walkers(people=1, frames=3), tmp_path / name)
     assert list(tmp_path.iterdir()) == []
 

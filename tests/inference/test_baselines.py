@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from motioncast.core.scene import Scene
 from motioncast.core.skeletons import MRT15, SOMOF13
 from motioncast.errors import InputError, SceneError

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import numpy as np
+
 from motioncast.core import rotation
 from motioncast.core.scene import Scene
 from motioncast.core.skeleton import Skeleton
@@ -27,7 +28,7 @@ def fuller(scene: Scene) -> np.ndarray:
 def test_a_turned_body_carries_hand_and_toe() -> None:
     last = fuller(walkers(people=2))
     turn = rotation.from_axis_angle(np.array([0.3, -0.2, 1.0]))
-    moved = rotation.rotate(turn, last) + [1.0, 2.0, 0.0]
+    moved = rotation.rotate(turn, last) + np.array([1.0, 2.0, 0.0])
     lift = Lift.between(MRT15, FULLER)
     np.testing.assert_allclose(lift(moved[None, :, :15], last)[0], moved, atol=1e-6)
     assert [FULLER.names[joint] for joint in np.flatnonzero(lift.carried)] == ["left_hand", "right_toe"]

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from motioncast.core.scene import Scene
 from motioncast.core.skeleton import Skeleton
 from motioncast.core.skeletons import MRT15

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from motioncast.core.skeletons import MRT15
 from motioncast.errors import SceneError
 from motioncast.inference.registry import DEFAULT_MODEL, load
@@ -41,10 +42,10 @@ def test_the_first_moments_are_a_flagged_guess(stream: Stream) -> None:
 
 def test_a_late_frame_fills_its_place(stream: Stream) -> None:
     other = load(DEFAULT_MODEL).stream(fps=30)  # pyright: ignore[reportAttributeAccessIssue]
-    for index in (*range(60), *range(61, 80)):
+    for index in (*range(30), *range(31, 40)):
         stream.push(frame(index), index / 30)
-    stream.push(frame(60), 60 / 30)
-    for index in range(80):
+    stream.push(frame(30), 30 / 30)
+    for index in range(40):
         other.push(frame(index), index / 30)
     np.testing.assert_array_equal(stream.observed, other.observed)
     np.testing.assert_array_equal(stream.positions, other.positions)

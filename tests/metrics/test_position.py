@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from motioncast.metrics.position import mpjpe_at, mpjpe_until, vim_at
 
 
@@ -30,7 +31,7 @@ def test_naive_twin_of_vim(pair: tuple[np.ndarray, np.ndarray, np.ndarray]) -> N
 
 def test_vim_of_equal_errors_is_the_root_of_the_number_of_joints() -> None:
     truth = np.zeros((1, 1, 2, 13, 3))
-    assert vim_at(truth + [0.1, 0, 0], truth)[0] == pytest.approx(0.1 * np.sqrt(13))
+    assert vim_at(truth + np.array([0.1, 0, 0]), truth)[0] == pytest.approx(0.1 * np.sqrt(13))
 
 
 def test_people_may_come_in_any_order(pair: tuple[np.ndarray, np.ndarray, np.ndarray]) -> None:

@@ -107,9 +107,7 @@ def sampler(data: Path, recipe: Recipe) -> Sampler:
     from motioncast.benchmarks.open_cmu import couple_scenes, single_scenes
     from motioncast.core.skeletons import MRT15
 
-    return Sampler(
-        single_scenes(data, "train", 60, MRT15), couple_scenes(data, "train", 60, MRT15), recipe, 15, 45, 15
-    )
+    return Sampler(single_scenes(data, "train", 60, MRT15), couple_scenes(data, "train", 60, MRT15), recipe, 15, 45, 15)
 
 
 def test_batches_are_seeded_and_finite(data: Path) -> None:

@@ -23,6 +23,7 @@ COMMANDS = {
     "models": "List the models, trained and simple.",
     "time": "Measure how long a model takes.",
     "train": "Train a model by a recipe.",
+    "ship": "Write the graph and the card of a trained run, with calibrated error radii.",
     "plot": "Draw the curves of a training run.",
     "evaluate": "Measure a model by a benchmark.",
     "coverage": "Print how much of what really happened lies within a model's error radii.",

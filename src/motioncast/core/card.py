@@ -87,7 +87,8 @@ class ModelCard:
         needed = {"name", "system", "task", "skeleton", "history", "horizon", "fps"}
         if not isinstance(values, dict) or not needed <= set(values) <= known:
             odd = sorted(set(values) - known) if isinstance(values, dict) else values
-            raise InputError(f"the model card has unknown or missing entries ({odd}); expected at least {sorted(needed)}")
+            wanted = sorted(needed)
+            raise InputError(f"the model card has unknown or missing entries ({odd}); expected at least {wanted}")
         if values["skeleton"] not in (*SKELETONS, "any"):
             raise InputError(f'the model card names the skeleton "{values["skeleton"]}"; known: {sorted(SKELETONS)}')
         for entry in fields(cls):

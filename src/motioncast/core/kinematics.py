@@ -201,9 +201,7 @@ def _place(
     return positions[:, :, parent] + rotation.rotate(base, local), base
 
 
-def _turned(
-    bones: np.ndarray, rest: np.ndarray, seen: np.ndarray, fps: float, start: np.ndarray | None
-) -> np.ndarray:
+def _turned(bones: np.ndarray, rest: np.ndarray, seen: np.ndarray, fps: float, start: np.ndarray | None) -> np.ndarray:
     """Rotations ``(time, people, 4)`` that turn rest bones ``(people, ends, 3)`` into each frame's."""
     known = seen if start is None else np.concatenate([np.ones_like(seen[:1]), seen[1:]])
     if rest.shape[1] > 1 and _spans_plane(rest).all() and _spans_plane(bones)[seen].all():

@@ -122,7 +122,7 @@ def bridge(positions: np.ndarray, observed: np.ndarray) -> np.ndarray:
         return positions
     filled = positions.astype(np.float64)
     time = np.arange(len(positions))
-    ever = observed.any(0)
+    ever = np.any(observed, 0)
     for person, joint in np.argwhere(~observed.all(0) & ever):
         seen = observed[:, person, joint]
         for axis in range(3):

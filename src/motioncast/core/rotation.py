@@ -79,9 +79,7 @@ def from_matrix(matrix: np.ndarray) -> np.ndarray:
     # four squared components times four; the largest is safe to divide by
     squares = np.concatenate([1 + trace[..., None], 1 - trace[..., None] + 2 * diagonal], -1)
     largest = squares.argmax(-1)
-    vector = np.stack(
-        [m[..., 2, 1] - m[..., 1, 2], m[..., 0, 2] - m[..., 2, 0], m[..., 1, 0] - m[..., 0, 1]], -1
-    )
+    vector = np.stack([m[..., 2, 1] - m[..., 1, 2], m[..., 0, 2] - m[..., 2, 0], m[..., 1, 0] - m[..., 0, 1]], -1)
     symmetric = m + np.swapaxes(m, -1, -2)
     rows = np.empty((*m.shape[:-2], 4, 4))
     rows[..., 0, 0] = squares[..., 0]

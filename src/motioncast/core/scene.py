@@ -59,7 +59,7 @@ class Scene:
             raise SceneError(f"the mask has shape {observed.shape}; expected {positions.shape[:3]}")
         if not (np.isfinite(self.fps) and self.fps > 0):
             raise SceneError(f"the frame rate is {self.fps}; expected a positive number of frames a second")
-        finite = np.isfinite(positions).all(-1)
+        finite = np.all(np.isfinite(positions), -1)
         if not finite[observed].all():
             time, person, joint = np.argwhere(observed & ~finite)[0]
             raise SceneError(
@@ -126,9 +126,7 @@ class Scene:
         groups = skeleton.map_from(self.skeleton)
         positions = np.stack([self.positions[:, :, list(group)].mean(2) for group in groups], 2)
         observed = np.stack([self.observed[:, :, list(group)].all(2) for group in groups], 2)
-        return replace(
-            self, positions=positions, observed=observed, skeleton=skeleton, rotations=None, offsets=None
-        )
+        return replace(self, positions=positions, observed=observed, skeleton=skeleton, rotations=None, offsets=None)
 
 
 def join(scenes: Sequence[Scene]) -> Scene:

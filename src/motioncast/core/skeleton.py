@@ -68,7 +68,8 @@ class Skeleton:
         try:
             return self.names.index(name)
         except ValueError:
-            raise SkeletonError(f'skeleton "{self.label}" has no joint "{name}"; it has {", ".join(self.names)}') from None
+            known = ", ".join(self.names)
+            raise SkeletonError(f'skeleton "{self.label}" has no joint "{name}"; it has {known}') from None
 
     def find(self, landmark: str) -> int | None:
         """Index of the joint that marks this landmark, or None."""

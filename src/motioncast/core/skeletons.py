@@ -42,14 +42,17 @@ CMU_ENDS: dict[str, str] = {
     }),
 }  # fmt: skip
 
-# BVH of Mixamo, MotionBuilder and their kin: a name stands for the START of that bone, so "head" is the base of
-# the skull, "foot" the ankle and "toebase" the ball of the foot.
+# BVH of Mixamo, MotionBuilder, Unity, Rokoko and their kin: a name stands for the START of that bone, so "head" is
+# the base of the skull, "foot" the ankle and "toebase" the ball of the foot.
 HUMANOID_STARTS: dict[str, str] = {
     "hips": "pelvis", "lowerback": "lower_spine", "spine": "lower_spine", "spine1": "middle_spine",
-    "spine2": "upper_spine", "spine3": "upper_spine", "chest": "upper_spine", "neck": "neck_base",
+    "spine2": "upper_spine", "spine3": "upper_spine", "chest": "upper_spine", "upperchest": "",
+    "neck": "neck_base",
     "neck1": "neck", "head": "upper_neck", "headend": "head_top", "headtopend": "head_top",
     **_sided("left", "right", {
-        "upleg": "hip", "leg": "knee", "foot": "ankle", "toebase": "foot", "toe": "foot",
+        "upleg": "hip", "leg": "knee", "foot": "ankle", "toebase": "foot", "toe": "foot", "toes": "foot",
+        "thigh": "hip", "shin": "knee", "upperleg": "hip", "lowerleg": "knee", "upperarm": "shoulder",
+        "lowerarm": "elbow",
         "toeend": "toe", "toebaseend": "toe", "shoulder": "collar", "arm": "shoulder", "forearm": "elbow",
         "hand": "wrist", "handindex1": "hand", "handmiddle1": "hand", "handmiddle4": "fingers",
         "handmiddle3end": "fingers", "handthumb4": "thumb", "handthumb3end": "thumb",
@@ -289,9 +292,7 @@ COCO17 = Skeleton(
     label="coco17",
 )  # fmt: skip
 
-SMPL24 = recognise(
-    [*SMPL22.names, "left_hand", "right_hand"], [*SMPL22.parents, 20, 21], "smpl24"
-)
+SMPL24 = recognise([*SMPL22.names, "left_hand", "right_hand"], [*SMPL22.parents, 20, 21], "smpl24")
 
 CMU31 = recognise(
     ["root", "lhipjoint", "lfemur", "ltibia", "lfoot", "ltoes", "rhipjoint", "rfemur", "rtibia", "rfoot", "rtoes",
@@ -320,8 +321,7 @@ OPENPOSE25 = recognise(
 """OpenPose's BODY_25; the pelvis comes first here, since a parent comes before its children."""
 
 SKELETONS: dict[str, Skeleton] = {
-    skeleton.label: skeleton
-    for skeleton in (MRT15, SOMOF13, SMPL22, SMPL24, COCO17, CMU31, H36M17, OPENPOSE25)
+    skeleton.label: skeleton for skeleton in (MRT15, SOMOF13, SMPL22, SMPL24, COCO17, CMU31, H36M17, OPENPOSE25)
 }
 """Known skeletons by name."""
 

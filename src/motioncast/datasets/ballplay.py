@@ -27,11 +27,12 @@ def read(folder: str | Path) -> Iterator[Scene]:
     Raises:
         InputError: If the folder does not hold the clips.
     """
-    folder = next((place for place in (Path(folder), Path(folder) / "extra") if (place / "ballplay_index.csv").is_file()), None)
-    if folder is None or not (folder / "extra_ballplay.npz").is_file():
+    places = (Path(folder), Path(folder) / "extra")
+    place = next((place for place in places if (place / "ballplay_index.csv").is_file()), None)
+    if place is None or not (place / "extra_ballplay.npz").is_file():
         raise InputError("no ball players there; expected extra_ballplay.npz and ballplay_index.csv")
-    clips = [row["id"] for row in csv.DictReader(read_text(folder / "ballplay_index.csv").splitlines())]
-    with np.load(folder / "extra_ballplay.npz", allow_pickle=False) as data:
+    clips = [row["id"] for row in csv.DictReader(read_text(place / "ballplay_index.csv").splitlines())]
+    with np.load(place / "extra_ballplay.npz", allow_pickle=False) as data:
         names = [str(name) for name in data["joint_names"]]
         skeleton = recognise(names, [int(parent) for parent in data["parents"]], "ballplay53")
         for clip in clips:

@@ -275,7 +275,7 @@ def sound(scene: Scene, turn_deg: float = 25.0, speed_m_s: float = 30.0, reach: 
     speed = np.linalg.norm(np.diff(scene.positions[:, :, body], axis=0), axis=-1).max(-1) * scene.fps
     jumps = (np.degrees(2 * np.arccos(cosine)) > turn_deg) | (speed > speed_m_s)
     good = np.ones(scene.positions.shape[:2], bool)
-    for person in range(good.shape[1]):
+    for person in range(len(scene.people)):
         at = np.flatnonzero(jumps[:, person])
         for first in at:
             later = at[(at > first) & (at <= first + scene.fps / 5)]

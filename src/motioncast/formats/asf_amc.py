@@ -348,10 +348,7 @@ def _by_lines(lines: list[str], start: int, skeleton: Acclaim, path: str | Path)
     last = frames[-1]
     if set(frames[0]) - set(last):
         raise FormatError(path, f"the last frame has only {len(last)} bones; the file seems cut off", len(lines))
-    return {
-        name: np.array([frame.get(name, [0.0] * widths[name]) for frame in frames])
-        for name in _moving(skeleton)
-    }
+    return {name: np.array([frame.get(name, [0.0] * widths[name]) for frame in frames]) for name in _moving(skeleton)}
 
 
 def bone_ends(skeleton: Acclaim, values: Mapping[str, np.ndarray]) -> np.ndarray:

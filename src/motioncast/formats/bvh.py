@@ -97,9 +97,9 @@ def read(
     rest = _forward(skeleton.parents, np.broadcast_to(rotation.IDENTITY, (1, len(joints), 4)), offsets[None])[0]
     seen = np.ones((len(values), 1, len(joints)), bool)
     world = units.settle(path, positions[:, None], seen, skeleton, up=up, unit=unit, usual_up="y", rest=rest)
-    slide = "" if not slides else float(np.ptp(places[:, slides], axis=0).max()) * world.scale
+    slide = 0.0 if not slides else float(np.ptp(places[:, slides], axis=0).max()) * world.scale
     remarks = (*world.remarks, *_thorax_remark(skeleton, offsets, path))
-    rigid = not slides or slide < _SLIDE_M
+    rigid = slide < _SLIDE_M
     if not rigid:
         names = ", ".join(skeleton.names[joint] for joint in slides[:3])
         remarks += (f"{Path(path).name}: bones change their length (at {names}); its rotations are left out",)
@@ -133,7 +133,9 @@ def _hierarchy(lines: list[str], path: str | Path) -> tuple[list[_Joint], int]:
         key = words[0].upper()
         if expect == "HIERARCHY":
             if key != "HIERARCHY":
-                raise FormatError(path, f'"{line.strip()[:40]}" where "HIERARCHY" was expected; is it a BVH file?', number)
+                raise FormatError(
+                    path, f'"{line.strip()[:40]}" where "HIERARCHY" was expected; is it a BVH file?', number
+                )
             expect = "joint"
         elif expect == "{":
             if words != ["{"]:
@@ -380,7 +382,7 @@ def _text(scene: Scene, person: int) -> str:
     skeleton = scene.skeleton
     world = units.World(units.axis_turn("y").T, 1 / units.UNITS_M["cm"])
     roots = [joint for joint, parent in enumerate(skeleton.parents) if parent < 0]
-    frames = _held(scene.observed[:, person][:, roots].all(-1))
+    frames = _held(np.all(scene.observed[:, person][:, roots], -1))
     if not len(frames):
         raise SceneError(f'person "{scene.people[person]}" is never seen; there is no motion to write')
     offsets = np.where(np.isin(np.arange(len(skeleton)), roots)[:, None], 0, world.points(scene.offsets[person]))

@@ -18,6 +18,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motioncast.core.forecast import Forecast
 from motioncast.core.scene import Scene
@@ -66,7 +67,8 @@ def read(
     if start is None:
         raise FormatError(path, "has no header; expected time_s,person,JOINT_x,JOINT_y,JOINT_z,...")
     stated = _comments(lines[:start])
-    header = [name.strip() for name in next(_cells(lines[start : start + 1], path, start + 1))[1]]
+    _, cells = next(_cells(lines[start : start + 1], path, start + 1), (0, []))
+    header = [name.strip() for name in cells]
     joints = _joints(header, path, start + 1)
     times, people, values = _rows(lines, start, header, path)
     frames, rate = _frames(times, fps or _stated_rate(stated, path), path)
@@ -110,7 +112,8 @@ def _cells(lines: list[str], path: str | Path, first: int) -> Iterator[tuple[int
             if any(cells):
                 yield first + reader.line_num - 1, cells
     except csv.Error as error:
-        raise FormatError(path, f"is not a table of comma-separated values ({error})", first + reader.line_num) from None
+        line = first + reader.line_num
+        raise FormatError(path, f"is not a table of comma-separated values ({error})", line) from None
 
 
 def _joints(header: list[str], path: str | Path, line: int) -> list[str]:
@@ -165,10 +168,11 @@ def _number(text: str, path: str | Path, line: int, blank: bool = False) -> floa
     return value
 
 
-def _frames(times: np.ndarray, fps: float | None, path: str | Path) -> tuple[np.ndarray, float]:
+def _frames(times: NDArray[np.float64], fps: float | None, path: str | Path) -> tuple[np.ndarray, float]:
     """The frame of each row and the frame rate: the given one or that of the times."""
     since = times - times.min()
-    steps = np.diff(np.unique(since))
+    moments = np.unique(since)
+    steps = moments[1:] - moments[:-1]
     if fps is None:
         if not len(steps):
             raise FormatError(path, 'has one moment only and no frame rate; add the comment "# fps: 30" or give --fps')
@@ -237,7 +241,7 @@ def _body(
                 cells = row % tuple((positions[frame, person] + 0.0).ravel().tolist())
             else:
                 points = zip(seen.tolist(), positions[frame, person].tolist(), strict=True)
-                cells = ",".join("%.6f,%.6f,%.6f" % tuple(point) if there else ",," for there, point in points)
+                cells = ",".join(f"{x:.6f},{y:.6f},{z:.6f}" if there else ",," for there, (x, y, z) in points)
             yield f"{prefix}{time:.6f},{name},{cells}"
 
 

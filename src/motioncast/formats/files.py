@@ -8,7 +8,7 @@ import re
 import secrets
 import zipfile
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import numpy as np
@@ -60,10 +60,8 @@ def atomic_write(path: str | Path) -> Iterator[Path]:
 
 
 def _remove(temporary: Path) -> None:
-    try:
+    with suppress(OSError):  # a folder that cannot be written has no temporary file either
         temporary.unlink(missing_ok=True)
-    except OSError:  # a folder that cannot be written has no temporary file either
-        pass
 
 
 def _reason(error: OSError) -> str:
@@ -109,7 +107,7 @@ def read_bytes(path: str | Path, limit: int | None = None) -> bytes:
 
 
 def read_text(path: str | Path, limit: int = MAX_TEXT_BYTES) -> str:
-    """The text of a UTF-8 file with line ends as ``\\n``, whatever system wrote it.
+    r"""The text of a UTF-8 file with line ends as ``\n``, whatever system wrote it.
 
     Raises:
         InputError: If there is no such file or it cannot be read.
@@ -148,9 +146,7 @@ def read_npz(path: str | Path) -> dict[str, np.ndarray]:
                     f"unpacks to {len(members)} arrays of {total >> 20} MiB; at most {MAX_NPZ_MEMBERS} arrays "
                     f"of {MAX_NPZ_BYTES >> 20} MiB are read",
                 )
-            return {
-                member.filename.removesuffix(".npy"): _read_member(archive, member, path) for member in members
-            }
+            return {member.filename.removesuffix(".npy"): _read_member(archive, member, path) for member in members}
     except FormatError:
         raise
     except Exception as error:  # zipfile and numpy raise a dozen kinds on damaged bytes; all mean one thing

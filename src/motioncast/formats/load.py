@@ -36,8 +36,7 @@ class Format(Protocol):
 
 
 FORMATS: dict[str, Format] = {
-    name: cast(Format, module)
-    for name, module in {"bvh": bvh, "npz": npz, "csv": csv, "trc": trc, "c3d": c3d}.items()
+    name: cast(Format, module) for name, module in {"bvh": bvh, "npz": npz, "csv": csv, "trc": trc, "c3d": c3d}.items()
 }
 """Formats of one file a scene; ASF/AMC comes in pairs and is handled apart."""
 
@@ -65,6 +64,8 @@ def load_scene(
         SceneError: If the files do not fit together or no unit makes a person of a body.
         MissingExtra: If a C3D file comes and ezc3d is not installed.
     """
+    if fps is not None and not 0 < fps < float("inf"):
+        raise InputError(f"{fps:g} frames a second were given; expected a positive number")
     if not paths:
         raise InputError("no motion file came; give one scene file, or one motion file a person")
     files = [Path(path) for path in paths]

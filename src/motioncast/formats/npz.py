@@ -181,7 +181,8 @@ def _scene(
     try:
         skeleton = Skeleton(tuple(names), tuple(parents), tuple(landmarks), _entry(path, tree, "label", str))
         if named:
-            known = dict(zip(names, landmarks, strict=True))
+            taken = set(named.values())  # the user's word wins over the file's
+            known = {name: "" if place in taken else place for name, place in zip(names, landmarks, strict=True)}
             skeleton = recognise(names, parents, skeleton.label, {**known, **named})
         return Scene(
             positions,

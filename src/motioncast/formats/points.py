@@ -47,9 +47,7 @@ def scene_of_points(
             raise SkeletonError(f'{path}: the point "{name}" comes twice; names must be unique')
     skeleton = grow(names, Path(path).suffix.removeprefix("."), named)
     points = points[:, :, [list(names).index(name) for name in skeleton.names]]
-    observed = np.isfinite(points).all(-1)
+    observed = np.all(np.isfinite(points), -1)
     points = np.where(observed[..., None], points, 0.0)
     world = units.settle(path, points, observed, skeleton, up=up, unit=unit, usual_up=usual_up)
-    return Scene(
-        world.points(points), skeleton, fps, observed, tuple(people), source=str(path), remarks=world.remarks
-    )
+    return Scene(world.points(points), skeleton, fps, observed, tuple(people), source=str(path), remarks=world.remarks)

@@ -172,7 +172,7 @@ def _middle(
     for places in choices:
         joints = [joint for joint in map(skeleton.find, places) if joint is not None]
         if len(joints) == len(places):
-            seen = observed[:, :, joints].all(2)
+            seen = np.all(observed[:, :, joints], 2)
             return np.where(seen[..., None], positions[:, :, joints].mean(2), np.nan)
     return None
 
@@ -242,9 +242,7 @@ def _unit_of(path: str | Path, size: float) -> str:
     )
 
 
-def _up_of(
-    positions: np.ndarray, observed: np.ndarray, skeleton: Skeleton, rest: np.ndarray | None, usual: str
-) -> str:
+def _up_of(positions: np.ndarray, observed: np.ndarray, skeleton: Skeleton, rest: np.ndarray | None, usual: str) -> str:
     evidence = [upright(positions, observed, skeleton)]
     if rest is not None:
         evidence.append(upright(rest[None, None], np.ones((1, 1, len(rest)), bool), skeleton))

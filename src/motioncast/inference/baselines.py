@@ -52,8 +52,8 @@ class Recent:
     def place(self, landmark: str) -> np.ndarray:
         """Where a place of the body was, ``(time, people, 3)``; the middle of all joints where it has no joint."""
         for places in ((landmark,), *STAND_INS.get(landmark, ())):
-            joints = [self.scene.skeleton.find(name) for name in places]
-            if None not in joints:
+            joints = [joint for joint in map(self.scene.skeleton.find, places) if joint is not None]
+            if len(joints) == len(places):
                 return self.positions[:, :, joints].mean(2)
         return self.positions.mean(2)
 

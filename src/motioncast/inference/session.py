@@ -111,14 +111,14 @@ class GraphForecaster:
             warnings.append(f"{names}: seen too briefly for the model; their last motion, fading, is carried on")
             lifted[:, brief] = guess(root_velocity_damped, asked, frames)[:, brief]
         return Forecast(
-            lifted[None], scene, asked.people, card, None, self.radius(lift, scene, frames), lift.carried, brief, seed,
-            tuple(warnings),
+            lifted[None], scene, asked.people, card, radius_m=self.radius(lift, scene, frames), carried=lift.carried,
+            guessed=brief, seed=seed, warnings=tuple(warnings),
         )  # fmt: skip
 
     def roll(
         self, history: np.ndarray, observed: np.ndarray, frames: int, progress: Progress | None = None
     ) -> np.ndarray:
-        """The graph's answer, ``(frames, people, joints, 3)``; its own answer becomes its history as often as needed."""
+        """The graph's answer, ``(frames, people, joints, 3)``; its own answer becomes its history where it ends."""
         answers: list[np.ndarray] = []
         done = 0
         while done < frames:

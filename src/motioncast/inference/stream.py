@@ -56,7 +56,7 @@ class Stream:
             if row is None:
                 continue
             column = self._column(person)
-            seen = np.isfinite(pose).all(-1)
+            seen = np.all(np.isfinite(pose), -1)
             self.positions[row, column] = np.where(seen[:, None], pose, 0)
             self.observed[row, column] = seen
         self._forget()

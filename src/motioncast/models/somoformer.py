@@ -90,6 +90,10 @@ class SoMoFormerConfig:
 class SoMoFormer(nn.Module):
     """World-frame history with masks in; the world-frame future after each layer out."""
 
+    dct: Tensor
+    mean: Tensor
+    deviation: Tensor
+
     def __init__(self, config: SoMoFormerConfig) -> None:
         super().__init__()
         self.config = config
@@ -107,17 +111,14 @@ class SoMoFormer(nn.Module):
         self.person = nn.Embedding(config.people, rows)
         self.grid = nn.Embedding(2 * config.cells if released else config.cells**2, config.grid_width)
         self.layers = nn.ModuleList(
-            EncoderLayer(config.width, config.heads, config.feed_forward, config.dropout)
-            for _ in range(config.layers)
+            EncoderLayer(config.width, config.heads, config.feed_forward, config.dropout) for _ in range(config.layers)
         )
         self.head = nn.Linear(config.width, frames)
         self.register_buffer("dct", dct_matrix(frames), persistent=False)
         self.register_buffer("mean", torch.zeros(frames))
         self.register_buffer("deviation", torch.ones(frames))
 
-    def forward(
-        self, history: Tensor, observed: Tensor, weights: list[Tensor] | None = None
-    ) -> list[Tensor]:
+    def forward(self, history: Tensor, observed: Tensor, weights: list[Tensor] | None = None) -> list[Tensor]:
         """The future of all people after each layer, the last one being the answer.
 
         Args:

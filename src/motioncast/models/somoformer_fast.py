@@ -103,7 +103,7 @@ class SoMoFormerFast(nn.Module):
         Returns:
             ``(B, F, P, J, 3)`` metres, world.
         """
-        batch, h, people = history.shape[:3]
+        batch, _, people = history.shape[:3]
         history = fill_gaps(history, observed)
         origin, heading = self.stand(history[:, -1])
         own = turn(history - origin[:, None, :, None], heading[:, None, :, None], back=True)
@@ -127,6 +127,7 @@ class SoMoFormerFast(nn.Module):
         """Where each person stands, ``(B, P, 3)``, and its heading as a horizontal unit vector, ``(B, P, 2)``."""
         origin = pose[:, :, self.root].mean(2)
         across = sum(pose[:, :, left] - pose[:, :, right] for left, right in self.sides)
+        assert isinstance(across, Tensor)  # there are sides: the sum is not its start, 0
         forward = torch.stack([across[..., 1], -across[..., 0]], -1)
         length = forward.norm(dim=-1, keepdim=True)
         ahead = torch.cat([torch.ones_like(length), torch.zeros_like(length)], -1)

@@ -18,9 +18,7 @@ class EncoderLayer(nn.Module):
         norm_first: Normalise before each part (pre-norm, GELU) instead of after it (post-norm, ReLU).
     """
 
-    def __init__(
-        self, width: int, heads: int, feed_forward: int, dropout: float, *, norm_first: bool = False
-    ) -> None:
+    def __init__(self, width: int, heads: int, feed_forward: int, dropout: float, *, norm_first: bool = False) -> None:
         super().__init__()
         self.heads, self.norm_first, self.dropout = heads, norm_first, dropout
         self.project = nn.Linear(width, 3 * width)

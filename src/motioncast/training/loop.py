@@ -95,7 +95,8 @@ def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = pr
             scores = {name: ratio(mean, windows, config.fps) for name, windows in checks.items()}
             score = float(np.mean(list(scores.values())))
             total = spent + time.perf_counter() - began
-            entry = {"step": step, "loss": float(np.mean(losses)), "validation": scores, "score": score, "seconds": total}
+            loss_now = float(np.mean(losses))
+            entry = {"step": step, "loss": loss_now, "validation": scores, "score": score, "seconds": total}
             losses = []
             if fabric.is_global_zero:
                 with (out / "metrics.jsonl").open("a", encoding="utf-8") as log:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from importlib import resources
 from pathlib import Path
@@ -94,5 +95,15 @@ def read_recipe(name_or_path: str | Path) -> Recipe:
     known = {entry.name for entry in fields(Recipe)}
     if not {"name", "model"} <= set(values) <= known:
         odd = ", ".join(sorted(set(values) - known)) or "name and model are needed"
-        raise InputError(f'recipe "{name_or_path}" has unknown or missing entries ({odd}); known: {", ".join(sorted(known))}')
-    return Recipe(**{key: tuple(value) if isinstance(value, list) else value for key, value in values.items()})
+        raise InputError(
+            f'recipe "{name_or_path}" has unknown or missing entries ({odd}); known: {", ".join(sorted(known))}'
+        )
+    return recipe_of(values)
+
+
+def recipe_of(entries: Mapping[str, Any]) -> Recipe:
+    """A recipe from entries as TOML and JSON hold them, with lists for tuples."""
+    arguments: dict[str, Any] = {
+        key: tuple(value) if isinstance(value, list) else value for key, value in entries.items()
+    }
+    return Recipe(**arguments)

@@ -18,7 +18,7 @@ from motioncast.datasets.windows import cut
 from motioncast.inference.registry import load
 from motioncast.models import build
 from motioncast.training.export import export, load_weights
-from motioncast.training.recipe import Recipe
+from motioncast.training.recipe import Recipe, recipe_of
 
 DATA = (
     "CMU motion capture (mocap.cs.cmu.edu, created with funding from NSF EIA-0196217): the training takes of "
@@ -93,8 +93,7 @@ def calibrated(folds: Sequence[Path], data: Path, model: Forecaster | None = Non
 
 
 def _recipe(run: Path) -> Recipe:
-    values = json.loads((run / "recipe.json").read_text(encoding="utf-8"))
-    return Recipe(**{key: tuple(value) if isinstance(value, list) else value for key, value in values.items()})
+    return recipe_of(json.loads((run / "recipe.json").read_text(encoding="utf-8")))
 
 
 def _fold_forecaster(run: Path) -> Forecaster:

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,8 @@ from motioncast.datasets.windows import Windows, cut
 from motioncast.errors import InputError
 from motioncast.inference.registry import load
 from motioncast.testing import walkers
+
+built = cache(windows_of)
 
 TOY = Protocol("toy", "mrt15", 15.0, 15, 45, (15, 30, 45), (15, 30, 45), "mpjpe", "walkers")
 
@@ -60,14 +63,13 @@ def test_order_of_windows_and_people_changes_no_figure() -> None:
 
 def test_the_future_does_not_reach_the_forecast() -> None:
     windows = toy_windows()
+    windows = Windows(windows.positions[:3], windows.observed[:3], windows.takes[:3], windows.starts[:3], 15)
     changed = windows.positions.copy()
     changed[:, 15:] += 1.0
     other = Windows(changed, windows.observed, windows.takes, windows.starts, 15)
     for name in ("root-velocity-damped", "somoformer-fast"):
         model = load(name)
-        np.testing.assert_array_equal(
-            forecast_windows(model, TOY, windows)[:5], forecast_windows(model, TOY, other)[:5]
-        )
+        np.testing.assert_array_equal(forecast_windows(model, TOY, windows), forecast_windows(model, TOY, other))
 
 
 def test_another_protocol_or_another_frame_is_another_hash() -> None:
@@ -106,7 +108,7 @@ def test_the_composed_scenes_are_those_of_the_manifest(shared: Path) -> None:
     import motioncast.benchmarks as package
 
     listed = Path(package.__file__).parent / "manifests" / "cmu-crowd.csv"
-    _, windows = windows_of("cmu-crowd", shared)
+    _, windows = built("cmu-crowd", shared)
     assert manifest(windows) == listed.read_text(encoding="utf-8")
 
 
@@ -126,7 +128,7 @@ def test_simple_guesses_on_the_couple_are_those_that_were_measured(shared: Path)
 @pytest.mark.data
 @pytest.mark.parametrize("name", BENCHMARKS)
 def test_every_benchmark_builds(name: str, shared: Path) -> None:
-    protocol, windows = windows_of(name, shared)
+    protocol, windows = built(name, shared)
     assert windows.positions.shape[1] == protocol.history + protocol.horizon
     assert np.isfinite(windows.positions).all()
     thigh = np.linalg.norm(windows.positions[..., 2, :] - windows.positions[..., 0, :], axis=-1)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from motioncast.core import rotation
 from motioncast.core.resample import LOBES, resample, sample
 from motioncast.core.scene import Scene
 from motioncast.core.skeleton import Skeleton
@@ -121,17 +122,22 @@ class Lift:
         if not self.carried.any():
             return lifted
         torso = [joint for joint in self.known if self.skeleton.landmarks[joint] in TORSO]
-        turn = _kabsch(_spread(last, torso), _spread(lifted, torso), np.ones(len(torso)), np.zeros((3, 3)))
+        torso_turn = rotation.kabsch(_spread(last, torso), _spread(lifted, torso))
         turns: dict[bytes, np.ndarray] = {}  # joints of one hand have the same carriers
         for joint in np.flatnonzero(self.carried):
-            carriers, weights = self.carriers[joint], self.weights[joint]
+            carriers = self.carriers[joint]
             anchor, key = carriers[0], carriers.tobytes()
             if key not in turns:
-                before = last[:, carriers] - last[:, [anchor]]
-                after = lifted[:, :, carriers] - lifted[:, :, [anchor]]
-                size = np.square(before).sum((-1, -2)).max()
-                turns[key] = _kabsch(before, after, weights, turn * TORSO_SHARE * size)
-            lifted[:, :, joint] = lifted[:, :, anchor] + _apply(turns[key], last[:, joint] - last[:, anchor])
+                share = np.sqrt(self.weights[joint])[:, None]
+                before = (last[:, carriers] - last[:, [anchor]]) * share
+                after = (lifted[:, :, carriers] - lifted[:, :, [anchor]]) * share
+                # three axes that turn with the torso decide what the carriers leave open
+                axes = np.eye(3) * np.sqrt(TORSO_SHARE * np.square(before).sum((-1, -2)).max())
+                turned = rotation.rotate(torso_turn[:, :, None], axes)
+                rest = np.concatenate([before, np.broadcast_to(axes, (len(before), 3, 3))], 1)
+                turns[key] = rotation.kabsch(rest, np.concatenate([after, turned], 2))
+            carried = rotation.rotate(turns[key], last[:, joint] - last[:, anchor])
+            lifted[:, :, joint] = lifted[:, :, anchor] + carried
         return lifted
 
 
@@ -150,19 +156,6 @@ def _hops(skeleton: Skeleton) -> np.ndarray:
 def _spread(points: np.ndarray, joints: list[int]) -> np.ndarray:
     chosen = points[..., joints, :]
     return chosen - chosen.mean(-2, keepdims=True)
-
-
-def _apply(turn: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-    return (turn @ vectors[..., None])[..., 0]
-
-
-def _kabsch(before: np.ndarray, after: np.ndarray, weights: np.ndarray, prior: np.ndarray) -> np.ndarray:
-    """The rotation that best turns points into others, ``(..., 3, 3)``; the prior decides what they leave open."""
-    correlation = np.swapaxes(after * weights[:, None], -1, -2) @ before + prior
-    left, _, right = np.linalg.svd(correlation)
-    left = left.copy()
-    left[..., -1] *= np.sign(np.linalg.det(left @ right))[..., None]
-    return left @ right
 
 
 def rigid_bones(history: Scene) -> np.ndarray:

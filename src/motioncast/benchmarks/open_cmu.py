@@ -37,9 +37,9 @@ def all_but_test(data: Path, fps: float, skeleton: Skeleton) -> tuple[list[Scene
 
 
 def fold_of(scene: Scene, folds: int) -> int:
-    """The part of the data that a take belongs to: by subject, the couple by take."""
+    """The part of the data that a take belongs to: by actor, the couple by take."""
     subject, take = (int(part) for part in scene.people[0].split("_"))
-    return (take if subject in cmu.COUPLE else subject) % folds
+    return (take if subject in cmu.COUPLE else cmu.SAME_ACTOR.get(subject, subject)) % folds
 
 
 def crowd(singles: list[Scene], couples: list[Scene], history: int, horizon: int) -> Windows:

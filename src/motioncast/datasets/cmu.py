@@ -38,6 +38,9 @@ TEST_SUBJECTS = frozenset({5, 7, 9, 11, 13, 14, 32, 35, 91, 131})
 COUPLE = (60, 61)
 """Two people who dance salsa together, take by take in one world and on one clock."""
 
+SAME_ACTOR = {16: 1, 17: 1, 18: 1, 20: 1}
+"""Subjects whose skeletons carry the name of another subject's actor, and that subject."""
+
 OFFSET_STEP_M = 5e-5
 LAST_BAD_FRAME = {"16_15": 2}
 """Takes that start in a stretched-arm pose and jump out of it: frames to drop."""

@@ -37,7 +37,7 @@ from torch import Tensor, nn
 
 from motioncast.core.skeletons import SKELETONS
 from motioncast.nn.attention import EncoderLayer
-from motioncast.nn.dct import dct_matrix
+from motioncast.nn.dct import dct_matrix, exact
 from motioncast.nn.gaps import fill_gaps
 from motioncast.nn.losses import mean_distance
 
@@ -144,14 +144,18 @@ class SoMoFormer(nn.Module):
     def coefficients(self, centred: Tensor) -> Tensor:
         """DCT over time of the padded trajectory (Eq. 1), ``(B, P, J, 3, F)``."""
         padded = torch.cat([centred, centred[:, -1:].expand(-1, self.config.horizon, -1, -1, -1)], 1)
-        return padded.permute(0, 2, 3, 4, 1) @ self.dct.T
+        padded = padded.permute(0, 2, 3, 4, 1)
+        return exact(padded, self.dct.T)
 
     def standardised(self, centred: Tensor) -> Tensor:
         """Coefficients in units of their spread over the training windows."""
         return (self.coefficients(centred) - self.mean) / self.deviation
 
     def fit_statistics(self, history: Tensor) -> None:
-        """Take mean and spread of each coefficient from windows of the training set, ``(B, H, P, J, 3)``."""
+        """Take mean and spread of each coefficient from windows of the training set, ``(B, H, P, J, 3)``.
+
+        All joints of the windows must have been seen.
+        """
         values = self.coefficients(history - history[:, -1:, :, self.neck : self.neck + 1]).flatten(0, 3)
         self.mean.copy_(values.mean(0))
         # padding leaves high orders almost nothing to vary; the floor keeps a change of a millimetre small
@@ -159,7 +163,7 @@ class SoMoFormer(nn.Module):
 
     def trajectory(self, coefficients: Tensor) -> Tensor:
         """The future part of the trajectory (Eq. 3), ``(B, horizon, P, J, 3)``."""
-        whole = (coefficients * self.deviation + self.mean) @ self.dct
+        whole = exact(coefficients * self.deviation + self.mean, self.dct)
         return whole[..., self.config.history :].permute(0, 4, 1, 2, 3)
 
     def tokens(self, coefficients: Tensor, neck: Tensor, present: Tensor) -> Tensor:
@@ -167,7 +171,9 @@ class SoMoFormer(nn.Module):
         batch, people = coefficients.shape[:2]
         content = self.embed(coefficients).flatten(2, 3)  # B, P, 3 J, d - g
         joint = self.joint.weight[None, None]
-        person = self.person.weight[:people][None, :, None]
+        # in training every row of the table gets to stand for somebody (Sec. 3.7: empty slots are permuted too)
+        rows = torch.randperm(self.config.people)[:people] if self.training else slice(people)
+        person = self.person.weight[rows][None, :, None]
         if self.config.preset == "release":
             joint, person = shortened(joint), shortened(person)
             both = torch.stack([joint.expand(1, people, -1, -1), person.expand(-1, -1, 3 * self.joints, -1)], -1)

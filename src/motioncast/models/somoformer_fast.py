@@ -23,7 +23,7 @@ from torch import Tensor, nn
 
 from motioncast.core.skeletons import SKELETONS
 from motioncast.nn.attention import EncoderLayer
-from motioncast.nn.dct import dct_matrix
+from motioncast.nn.dct import dct_matrix, exact
 from motioncast.nn.gaps import fill_gaps
 from motioncast.nn.losses import LIMBS, mean_distance, with_true_lengths
 
@@ -114,7 +114,8 @@ class SoMoFormerFast(nn.Module):
         for layer in self.layers:
             tokens = layer(tokens, bias, weights)
         joints = self.norm(tokens[:, : self.joints]).view(batch, people, self.joints, -1)
-        change = self.head(joints).view(batch, people, self.joints, 3, self.config.coefficients) @ self.answer
+        coefficients = self.head(joints).view(batch, people, self.joints, 3, self.config.coefficients)
+        change = exact(coefficients, self.answer)
         future = own[:, -1:] + change.permute(0, 4, 1, 2, 3)
         return turn(future, heading[:, None, :, None]) + origin[:, None, :, None]
 

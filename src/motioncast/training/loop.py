@@ -12,7 +12,7 @@ import json
 import math
 import time
 from collections.abc import Callable
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Literal
 
@@ -29,7 +29,8 @@ from motioncast.datasets.windows import Windows, cut
 from motioncast.metrics.position import mpjpe_at
 from motioncast.models import build
 from motioncast.training.batches import STORED_FPS, Sampler
-from motioncast.training.recipe import Recipe
+from motioncast.errors import InputError
+from motioncast.training.recipe import Recipe, read_run
 
 
 def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = print) -> Path:
@@ -58,13 +59,13 @@ def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = pr
     sampler = Sampler(*training_takes(recipe, data, skeleton), recipe, config.history, config.horizon, config.fps)
     checks = validation(data, skeleton, config.history, config.horizon, config.fps)
     if hasattr(raw, "fit_statistics"):
-        first = next(sampler.batches(np.random.default_rng(recipe.seed)))
-        raw.fit_statistics(torch.from_numpy(first.positions[:, : config.history]))
+        raw.fit_statistics(torch.from_numpy(_whole_windows(sampler, recipe, config.history)))
     optimiser = torch.optim.AdamW(raw.parameters(), recipe.learning_rate, weight_decay=recipe.weight_decay)
     mean = copy.deepcopy(raw).requires_grad_(False).eval()
     start, best, spent = 0, math.inf, 0.0
     last = out / "last.pt"
     if last.exists():
+        _same_recipe(recipe, out)
         state = torch.load(last, map_location="cpu", weights_only=True)
         raw.load_state_dict(state["model"])
         mean.load_state_dict(state["mean"])
@@ -113,6 +114,20 @@ def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = pr
                 )  # fmt: skip
             say(f"{recipe.name} {json.dumps(entry)}")
     return out / "best.pt"
+
+
+def _whole_windows(sampler: Sampler, recipe: Recipe, history: int) -> np.ndarray:
+    """Histories of some training batches in which everything was seen, one person each."""
+    random = np.random.default_rng(recipe.seed)
+    windows = [window[:history] for window, mask in (sampler.window(1, random) for _ in range(1000)) if mask.all()]
+    return np.stack(windows).astype(np.float32)
+
+
+def _same_recipe(recipe: Recipe, out: Path) -> None:
+    """A run goes on with the recipe that it began with; only its length may change."""
+    began = read_run(out)
+    if replace(began, steps=recipe.steps) != recipe:
+        raise InputError(f"{out} was begun with another recipe; give another folder, or the recipe in its recipe.json")
 
 
 def _precision() -> Literal["bf16-mixed", "32-true"]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
@@ -107,3 +108,15 @@ def recipe_of(entries: Mapping[str, Any]) -> Recipe:
         key: tuple(value) if isinstance(value, list) else value for key, value in entries.items()
     }
     return Recipe(**arguments)
+
+
+def read_run(run: Path) -> Recipe:
+    """The recipe that a run was begun with.
+
+    Raises:
+        InputError: If the folder holds no run.
+    """
+    path = run / "recipe.json"
+    if not path.is_file():
+        raise InputError(f"{run} holds no recipe.json; give the folder of a training run")
+    return recipe_of(json.loads(path.read_text(encoding="utf-8")))

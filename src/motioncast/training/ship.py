@@ -18,7 +18,7 @@ from motioncast.datasets.windows import cut
 from motioncast.inference.registry import load
 from motioncast.models import build
 from motioncast.training.export import export, load_weights
-from motioncast.training.recipe import Recipe, recipe_of
+from motioncast.training.recipe import read_run
 
 DATA = (
     "CMU motion capture (mocap.cs.cmu.edu, created with funding from NSF EIA-0196217): the training takes of "
@@ -35,7 +35,7 @@ def ship(run: Path, folder: Path | None = None, radius: Mapping[str, Any] | None
         folder: Where the files go. Default: the run's folder.
         radius: Error radii for the card (:func:`calibrated`).
     """
-    recipe = _recipe(run)
+    recipe = read_run(run)
     model = build(recipe.model, recipe.sizes)
     load_weights(model, run / "best.pt")
     config = model.config
@@ -71,7 +71,7 @@ def calibrated(folds: Sequence[Path], data: Path, model: Forecaster | None = Non
         model: Without folds: the model whose validation takes are used.
     """
     errors: list[np.ndarray] = []
-    pairs = [(_fold_forecaster(run), _recipe(run)) for run in folds] or [(model, None)]
+    pairs = [(_fold_forecaster(run), read_run(run)) for run in folds] or [(model, None)]
     for forecaster, recipe in pairs:
         if forecaster is None:
             raise ValueError("radii need the runs of folds, or a model")
@@ -92,10 +92,6 @@ def calibrated(folds: Sequence[Path], data: Path, model: Forecaster | None = Non
     return {"levels": radii(errors), "n_takes": len(errors), "method": method}
 
 
-def _recipe(run: Path) -> Recipe:
-    return recipe_of(json.loads((run / "recipe.json").read_text(encoding="utf-8")))
-
-
 def _fold_forecaster(run: Path) -> Forecaster:
     ship(run)
-    return load(run / f"{_recipe(run).name}.onnx")
+    return load(run / f"{read_run(run).name}.onnx")

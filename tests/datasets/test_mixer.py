@@ -48,3 +48,10 @@ def test_turning_keeps_the_vertical() -> None:
     turned_points = turned(points, 1.0)
     np.testing.assert_array_equal(turned_points[:, 2], points[:, 2])
     np.testing.assert_allclose(np.linalg.norm(turned_points, axis=1), np.linalg.norm(points, axis=1), rtol=1e-5)
+
+
+def test_sixteen_people_find_room() -> None:
+    groups = [walk(60, 1 + seed % 2, seed) for seed in range(11)]
+    scene = arrange(groups, 14, np.random.default_rng(0))
+    assert scene is not None
+    assert scene.shape[1] == 16

@@ -89,3 +89,25 @@ def test_what_is_not_seen_may_be_nan_and_odd_poses_are_refused(stream: Stream) -
         stream.push({"ada": np.zeros((14, 3))})
     with pytest.raises(SceneError, match="time stamp"):
         stream.push(frame(0), float("nan"))
+
+
+def test_stamps_may_begin_later_and_a_clock_may_be_set_back(stream: Stream) -> None:
+    for index in range(40):
+        stream.push(frame(index))
+    stream.push(frame(40), 1000.0)
+    assert stream.now == 40
+    stream.push(frame(41), 3.0)
+    answer = stream.push(frame(42), 3.0 + 1 / 30)
+    assert answer is not None
+    assert "starts afresh" in answer.warnings[-1]
+    for index in range(43, 89):
+        answer = stream.push(frame(index), 3.0 + (index - 41) / 30)
+    assert answer is not None
+    assert not answer.warnings
+
+
+def test_a_wrong_pose_leaves_the_stream_as_it_was(stream: Stream) -> None:
+    stream.push(frame(0))
+    with pytest.raises(SceneError):
+        stream.push({**frame(1), "odd": np.zeros((3, 3))})
+    assert stream.now == 0

@@ -63,10 +63,22 @@ def test_a_zero_head_repeats_the_last_pose() -> None:
 
 def test_absent_people_change_nothing(model: SoMoFormer) -> None:
     history, observed = scene()
-    observed[:, :, 2] = False
-    other = history.clone()
-    other[:, :, 2] += 10
-    torch.testing.assert_close(model(history, observed)[-1][:, :, :2], model(other, observed)[-1][:, :, :2])
+    alone = model(history[:, :, :2], observed[:, :, :2])[-1]
+    gone = observed.clone()
+    gone[:, -1, 2] = False  # was there, and has left
+    for seen in (gone, observed & (torch.arange(3) < 2)[:, None]):
+        torch.testing.assert_close(model(history, seen)[-1][:, :, :2], alone, atol=1e-5, rtol=0)
+
+
+def test_every_row_of_the_person_table_is_trained() -> None:
+    torch.manual_seed(0)
+    training = SoMoFormer(SoMoFormerConfig(**SMALL)).train()
+    history, observed = scene()
+    for _ in range(40):
+        training(history, observed)[-1].sum().backward()
+    gradient = training.person.weight.grad
+    assert gradient is not None
+    assert (gradient.abs().sum(1) > 0).all()
 
 
 def test_in_the_release_absent_people_do_change_the_answer() -> None:

@@ -10,7 +10,7 @@ from motioncast.core.scene import Scene
 from motioncast.core.skeleton import Skeleton
 from motioncast.datasets import cmu
 from motioncast.datasets.mixer import arrange
-from motioncast.datasets.windows import Windows, cut, every
+from motioncast.datasets.windows import COMPOSED, Windows, cut, every
 
 CROWD_SCENES = 400
 CROWD_SEED = 2026
@@ -59,7 +59,7 @@ def crowd(singles: list[Scene], couples: list[Scene], history: int, horizon: int
         scene = arrange([windows.positions[index] for windows, index in drawn], history - 1, random)
         if scene is not None:
             positions.append(scene)
-            takes.append(" + ".join(windows.takes[index] for windows, index in drawn))
+            takes.append(COMPOSED.join(windows.takes[index] for windows, index in drawn))
             starts.append(drawn[0][0].starts[drawn[0][1]])
     stacked = np.stack(positions)
     return Windows(stacked, np.ones(stacked.shape[:-1], bool), tuple(takes), tuple(starts), history)

@@ -12,7 +12,7 @@ import numpy as np
 
 from motioncast.benchmarks import open_cmu
 from motioncast.core.skeletons import SKELETONS
-from motioncast.datasets import ballplay, cmu
+from motioncast.datasets import ballplay, cmu, somof
 from motioncast.datasets.windows import Windows, cut, every
 from motioncast.errors import InputError
 
@@ -81,23 +81,35 @@ def _crowd(data: Path, protocol: Protocol, split: str) -> Windows:
     return open_cmu.crowd(singles, couples, protocol.history, protocol.horizon)
 
 
+def _only_test(protocol: Protocol, split: str) -> None:
+    if split != "test":
+        raise InputError(f"{protocol.name} has test takes only; choose on cmu-duet, cmu-crowd or cmu-solo")
+
+
 def _ballplay(data: Path, protocol: Protocol, split: str) -> Windows:
+    _only_test(protocol, split)
     skeleton = SKELETONS[protocol.skeleton]
     scenes = [every(scene, protocol.fps, skeleton) for scene in ballplay.read(data)]
     return cut(scenes, protocol.history, protocol.horizon, protocol.stride)
 
 
 def _strangers(data: Path, protocol: Protocol, split: str) -> Windows:
+    _only_test(protocol, split)
     skeleton = SKELETONS[protocol.skeleton]
     takes = [take for take in cmu.takes(data) if take.subject in (32, 91)]
     scenes = [every(scene, protocol.fps, skeleton) for scene in cmu.read(takes)]
     return cut(scenes, protocol.history, protocol.horizon, protocol.stride)
 
 
+def _somof_3dpw(data: Path, protocol: Protocol, split: str) -> Windows:
+    return somof.read(data, split)
+
+
 BENCHMARKS: dict[str, tuple[Protocol, Callable[[Path, Protocol, str], Windows]]] = {
     "cmu-duet": (_cmu("cmu-duet", "the couple's takes, every 5 frames"), _duet),
     "cmu-crowd": (_cmu("cmu-crowd", "400 composed scenes of three, every second one with the couple"), _crowd),
     "cmu-solo": (_cmu("cmu-solo", "takes of single people, every 5 frames"), _solo),
+    "somof": (_somof("somof", "SoMoF's windows of 3DPW, from your own copy"), _somof_3dpw),
     "somof-ballplay": (_somof("somof-ballplay", "all clips of the ball players, every 5 frames"), _ballplay),
     "somof-strangers": (_somof("somof-strangers", "CMU's subjects 32 and 91, every 5 frames"), _strangers),
 }

@@ -12,7 +12,7 @@ from motioncast.benchmarks.protocols import Protocol, windows_of
 from motioncast.core.forecaster import Forecaster
 from motioncast.core.scene import Scene
 from motioncast.core.skeletons import SKELETONS
-from motioncast.datasets.windows import Windows
+from motioncast.datasets.windows import COMPOSED, Windows
 from motioncast.errors import InputError
 from motioncast.inference.registry import load
 from motioncast.metrics.position import joint_errors
@@ -20,6 +20,7 @@ from motioncast.metrics.position import joint_errors
 SIMPLE_GUESSES = ("zero-velocity", "constant-velocity", "neck-velocity", "root-velocity-damped")
 RESAMPLES = 1000
 FEWEST_TAKES = 10
+"""With fewer takes no interval is stated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +95,7 @@ def evaluate(
             f"second; {benchmark} scores {protocol.horizon} at {protocol.fps:g}; choose a model of its setting"
         )
     forecasts = forecast_windows(forecaster, protocol, windows, alone, progress)
-    name = forecaster.card.name
+    name, told = forecaster.card.name, "" if split == "test" else f" --split {split}"
     return Result(
         name,
         benchmark,
@@ -102,7 +103,7 @@ def evaluate(
         f"{protocol.windows} ({split})",
         len(windows),
         len(set(windows.takes)),
-        f"motioncast evaluate {name} {benchmark} --data DIR{' --alone' * alone}",
+        f"motioncast evaluate {name} {benchmark} --data DIR{' --alone' * alone}{told}",
         0,
         tuple(score(protocol, windows, forecasts)),
     )
@@ -147,7 +148,8 @@ def score(protocol: Protocol, windows: Windows, forecasts: np.ndarray) -> list[R
     values = figures(np.ones(len(names)))
     low: list[float | None] = [None] * len(values)
     high: list[float | None] = [None] * len(values)
-    if len(names) >= FEWEST_TAKES:
+    composed = any(COMPOSED in name for name in names)  # such scenes share takes and are not independent
+    if len(names) >= FEWEST_TAKES and not composed:
         random = np.random.default_rng(0)
         draws = random.multinomial(len(names), np.full(len(names), 1 / len(names)), RESAMPLES)
         spread = np.array([figures(drawn) for drawn in draws])

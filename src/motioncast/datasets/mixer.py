@@ -1,8 +1,9 @@
 """Composed scenes: takes of one person or of a couple, put into one world.
 
 People who were recorded together stay together; everybody else is turned about the vertical and set down at
-random. Places are chosen by the last frame of the history and nothing later, and nobody walks through anybody
-else: an arrangement in which two strangers come closer than arm's length is drawn again.
+random. A place is drawn by the last frame of the history. Nobody walks through anybody else: a place at which two
+strangers would come closer than arm's length at any time, later ones included, is drawn again. That selects scenes;
+no position of a scene is computed from what comes later.
 """
 
 from __future__ import annotations
@@ -29,6 +30,8 @@ def arrange(
 ) -> np.ndarray | None:
     """Groups of people set down in one world.
 
+    The circle grows with the number of people beyond three.
+
     Args:
         groups: For each group ``(time, people, joints, 3)``.
         now: Last frame of the history; each group's middle in that frame is what is placed.
@@ -45,23 +48,28 @@ def arrange(
         >>> scene.shape, bool(np.linalg.norm(scene[0, 0, 0] - scene[0, 1, 0]) >= PERSONAL_SPACE_M)
         ((20, 2, 15, 3), True)
     """
-    for _ in range(TRIES):
-        placed = []
-        for group in groups:
-            middle = group[now, :, pelvis].mean(0) * np.array([1, 1, 0], np.float32)
+    # a crowd gets the room that it needs
+    radius_m *= np.sqrt(max(1.0, sum(group.shape[1] for group in groups) / 3))
+    placed: list[np.ndarray] = []
+    for group in groups:
+        middle = group[now, :, pelvis].mean(0) * np.array([1, 1, 0], np.float32)
+        for _ in range(TRIES):
             distance, bearing = radius_m * np.sqrt(random.uniform()), random.uniform(0, 2 * np.pi)
             place = distance * np.array([np.cos(bearing), np.sin(bearing), 0], np.float32)
-            placed.append(turned(group - middle, random.uniform(0, 2 * np.pi)) + place.astype(np.float32))
-        if _apart(placed, pelvis):
-            return np.concatenate(placed, 1)
-    return None
+            there = turned(group - middle, random.uniform(0, 2 * np.pi)) + place.astype(np.float32)
+            if _apart([*placed, there], pelvis):
+                placed.append(there)
+                break
+        else:
+            return None
+    return np.concatenate(placed, 1)
 
 
 def _apart(groups: Sequence[np.ndarray], pelvis: int) -> bool:
-    """Whether people of different groups keep their personal space all the time."""
-    for number, group in enumerate(groups):
-        for other in groups[:number]:
-            difference = group[:, :, None, pelvis, :2] - other[:, None, :, pelvis, :2]
-            if (np.square(difference).sum(-1) < PERSONAL_SPACE_M**2).any():
-                return False
+    """Whether the people of the last group keep their personal space from all others all the time."""
+    *others, group = groups
+    for other in others:
+        difference = group[:, :, None, pelvis, :2] - other[:, None, :, pelvis, :2]
+        if (np.square(difference).sum(-1) < PERSONAL_SPACE_M**2).any():
+            return False
     return True

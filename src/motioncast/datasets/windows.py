@@ -8,6 +8,10 @@ import numpy as np
 
 from motioncast.core.scene import Scene
 from motioncast.core.skeleton import Skeleton
+from motioncast.errors import InputError
+
+COMPOSED = " + "
+"""Between the takes of a composed scene, in the name of what a window comes from."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,6 +64,9 @@ def cut(scenes: list[Scene], history: int, horizon: int, stride: int = 5) -> Win
 
     A window is left out where somebody is not seen at all in its last frame of history.
 
+    Raises:
+        InputError: If no take gives a window.
+
     Example:
         >>> from motioncast.core.skeletons import MRT15
         >>> scene = Scene(np.zeros((71, 1, 15, 3), np.float32), MRT15, 15)
@@ -76,4 +83,8 @@ def cut(scenes: list[Scene], history: int, horizon: int, stride: int = 5) -> Win
                 masks.append(mask)
                 takes.append(scene.source)
                 starts.append(start)
+    if not pieces:
+        raise InputError(
+            f"{len(scenes)} takes came and none has {length} frames in which everybody is seen at now; give more takes"
+        )
     return Windows(np.stack(pieces), np.stack(masks), tuple(takes), tuple(starts), history)

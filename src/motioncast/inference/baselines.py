@@ -176,7 +176,7 @@ def frames_ahead(card: ModelCard, scene: Scene, horizon_s: float | None) -> int:
         InputError: If the horizon is not a positive number of seconds.
     """
     if horizon_s is None:
-        horizon_s = card.horizon / card.fps
+        return max(1, int(card.horizon / card.fps * scene.fps + 1e-6))
     if not (np.isfinite(horizon_s) and horizon_s > 0):
         raise InputError(f"the horizon is {horizon_s} s; expected a positive number of seconds, such as 3")
     return max(1, round(horizon_s * scene.fps))

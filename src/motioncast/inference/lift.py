@@ -53,6 +53,11 @@ def lower(scene: Scene, skeleton: Skeleton, fps: float, history: int) -> Scene:
     )
 
 
+def between_sightings(observed: np.ndarray) -> np.ndarray:
+    """The mask with gaps closed that have a sighting before and after, ``(time, people, joints)``."""
+    return np.maximum.accumulate(observed) & np.maximum.accumulate(observed[::-1])[::-1]
+
+
 def between_frames(history: np.ndarray, future: np.ndarray, model_fps: float, fps: float, frames: int) -> np.ndarray:
     """A model's answer at the frames of the scene, without a step where history and answer meet.
 
@@ -132,9 +137,9 @@ class Lift:
                 before = (last[:, carriers] - last[:, [anchor]]) * share
                 after = (lifted[:, :, carriers] - lifted[:, :, [anchor]]) * share
                 # three axes that turn with the torso decide what the carriers leave open
-                axes = np.eye(3) * np.sqrt(TORSO_SHARE * np.square(before).sum((-1, -2)).max())
+                axes = np.eye(3) * np.sqrt(TORSO_SHARE * np.square(before).sum((-1, -2)))[:, None, None]
                 turned = rotation.rotate(torso_turn[:, :, None], axes)
-                rest = np.concatenate([before, np.broadcast_to(axes, (len(before), 3, 3))], 1)
+                rest = np.concatenate([before, axes], 1)
                 turns[key] = rotation.kabsch(rest, np.concatenate([after, turned], 2))
             carried = rotation.rotate(turns[key], last[:, joint] - last[:, anchor])
             lifted[:, :, joint] = lifted[:, :, anchor] + carried

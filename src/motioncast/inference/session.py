@@ -18,11 +18,20 @@ from motioncast.core.scene import Scene
 from motioncast.core.skeleton import Skeleton
 from motioncast.errors import InputError, SceneError
 from motioncast.inference.baselines import frames_ahead, guess, one_future, present, root_velocity_damped
-from motioncast.inference.lift import Lift, between_frames, keep_lengths, lower, needed_frames, reach, rigid_bones
+from motioncast.inference.lift import (
+    Lift,
+    between_frames,
+    between_sightings,
+    keep_lengths,
+    lower,
+    needed_frames,
+    reach,
+    rigid_bones,
+)
 from motioncast.inference.stream import Stream
 
-ENTRY = 2
-"""Who is not seen within so many first frames of the history has too little of it for the model."""
+FEWEST_FRAMES = 6
+"""Who is seen in fewer frames of the history is answered by a simple guess; 0.4 s at 15 a second."""
 
 FARTHEST_M = 10_000.0
 """Coordinates beyond this are a mistake, or geographic: metres from far away lose their millimetres in float32."""
@@ -80,7 +89,7 @@ class GraphForecaster:
         card = self.card
         warnings = list(one_future(card.name, samples))
         recent = scene[-needed_frames(card.history, card.fps, scene.fps) :]
-        asked = recent.select(present(recent))
+        asked = recent.select(present(scene))
         if len(asked.people) > card.people:
             raise SceneError(
                 f'{len(asked.people)} people are seen in the last frame; model "{card.name}" takes at most '
@@ -90,25 +99,31 @@ class GraphForecaster:
         if farthest > FARTHEST_M:
             raise SceneError(f"a joint is {farthest:.0f} m from the origin; expected metres within {FARTHEST_M:g} m")
         frames = frames_ahead(card, scene, horizon_s)
-        model_frames = int(np.ceil(frames * card.fps / scene.fps - 1e-6))
+        ratio = card.fps / scene.fps
+        model_frames = int(np.ceil((frames - 0.5) * ratio))  # half a frame more is not worth another pass
         past = lower(asked, card.joints, card.fps, card.history)
-        brief = ~past.observed[:ENTRY].any((0, 2)) | ~past.observed[-1].any(-1)
-        positions, observed = bridge(past.positions, past.observed), past.observed & ~brief[:, None]
-        if model_frames > card.horizon and not brief.all():
-            warnings.append(
-                f'{frames / scene.fps:.2f} s are beyond the {card.horizon / card.fps:.2f} s of "{card.name}"; '
-                "its own forecast was taken as history for the rest, and the error radius there is extrapolated"
-            )
-        future = self.roll(past.positions, observed, model_frames, progress)
+        brief = (past.observed.any(2).sum(0) < FEWEST_FRAMES) | ~past.observed[-1].any(-1)
+        positions = bridge(past.positions, past.observed)
         lift = Lift.between(card.joints, scene.skeleton)
-        last = bridge(asked.positions, asked.observed)[-1].astype(np.float64)
-        nearest = positions[-reach(card.fps / scene.fps) - 1 :]
-        lifted = between_frames(lift(nearest, last), lift(future, last), card.fps, scene.fps, frames)
-        if self.rigid:
-            lifted = keep_lengths(lifted, scene.skeleton, rigid_bones(asked))
+        lifted = np.zeros((frames, len(asked.people), len(scene.skeleton), 3))
+        if not brief.all():
+            if model_frames > card.horizon:
+                warnings.append(
+                    f'{frames / scene.fps:.2f} s are beyond the {card.horizon / card.fps:.2f} s of "{card.name}"; '
+                    "its own forecast was taken as history for the rest, and the error radius there is extrapolated"
+                )
+            future = self.roll(positions, between_sightings(past.observed) & ~brief[:, None], model_frames, progress)
+            last = bridge(asked.positions, asked.observed)[-1].astype(np.float64)
+            nearest = positions[-reach(ratio) - 1 :]
+            lifted = between_frames(lift(nearest, last), lift(future, last), card.fps, scene.fps, frames)
+            if self.rigid:
+                lifted = keep_lengths(lifted, scene.skeleton, rigid_bones(asked))
         if brief.any():
             names = ", ".join(person for person, short in zip(asked.people, brief, strict=True) if short)
-            warnings.append(f"{names}: seen too briefly for the model; their last motion, fading, is carried on")
+            warnings.append(
+                f"{names}: seen too briefly for the model; their last motion, fading, is carried on, "
+                "and the error radius does not hold for them"
+            )
             lifted[:, brief] = guess(root_velocity_damped, asked, frames)[:, brief]
         return Forecast(
             lifted[None], scene, asked.people, card, radius_m=self.radius(lift, scene, frames), carried=lift.carried,
@@ -118,7 +133,14 @@ class GraphForecaster:
     def roll(
         self, history: np.ndarray, observed: np.ndarray, frames: int, progress: Progress | None = None
     ) -> np.ndarray:
-        """The graph's answer, ``(frames, people, joints, 3)``; its own answer becomes its history where it ends."""
+        """The graph's answer, at least ``frames`` long; its own answer becomes its history where it ends.
+
+        Args:
+            history: ``(time, people, joints, 3)`` at the model's rate, without gaps.
+            observed: ``(time, people, joints)``: what of it the model may believe.
+            frames: Frames needed.
+            progress: Told how much is done.
+        """
         answers: list[np.ndarray] = []
         done = 0
         while done < frames:
@@ -129,7 +151,7 @@ class GraphForecaster:
             done += len(answers[-1])
             if progress is not None:
                 progress(min(1.0, done / frames))
-        return np.concatenate(answers)[:frames]
+        return np.concatenate(answers)
 
     def run(self, history: np.ndarray, observed: np.ndarray) -> np.ndarray:
         """One pass of the graph, batch first."""
@@ -164,6 +186,8 @@ class GraphForecaster:
             skeleton: Its joints. Default: the model's.
             horizon_s: How far to look ahead. Default: the model's horizon.
         """
+        if self._session is None:
+            self._session = self._open()  # now, so that no push waits for it
         memory = needed_frames(self.card.history, self.card.fps, fps)
         return Stream(lambda scene: self.answer(scene, horizon_s), skeleton or self.card.joints, fps, memory)
 

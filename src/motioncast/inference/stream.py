@@ -29,11 +29,7 @@ class Stream:
 
     def __init__(self, answer: Callable[[Scene], Forecast], skeleton: Skeleton, fps: float, memory: int) -> None:
         self.answer, self.skeleton, self.fps, self.memory = answer, skeleton, fps, memory
-        self.people: list[str] = []
-        self.first_s: float | None = None
-        self.now = -1
-        shape = (memory, 0, len(skeleton))
-        self.positions, self.observed = np.zeros((*shape, 3), np.float32), np.zeros(shape, bool)
+        self._start_afresh()
 
     def push(self, frame: Mapping[str, np.ndarray], time_s: float | None = None) -> Forecast | None:
         """Take a frame and forecast from the newest one.
@@ -48,37 +44,49 @@ class Stream:
         Raises:
             SceneError: If a person has another number of joints, or the time stamp is not a number.
         """
-        row = self._row(time_s)
-        for person, joints in frame.items():
-            pose = np.asarray(joints, np.float32)
+        poses = {person: np.asarray(joints, np.float32) for person, joints in frame.items()}
+        for person, pose in poses.items():
             if pose.shape != (len(self.skeleton), 3):
                 raise SceneError(f'"{person}" came as {pose.shape}; expected ({len(self.skeleton)} joints, 3)')
-            if row is None:
-                continue
-            column = self._column(person)
-            seen = np.all(np.isfinite(pose), -1)
-            self.positions[row, column] = np.where(seen[:, None], pose, 0)
-            self.observed[row, column] = seen
-        self._forget()
+        number = self._number(time_s)
+        warnings: list[str] = []
+        if number <= self.now - self.memory:
+            self.too_late += 1
+            if self.too_late > 1:  # one straggler is late; a second one means that the clock was set back
+                warnings.append(f"the clock went back to {time_s} s; the stream starts afresh")
+                self._start_afresh()
+                number = self._number(time_s)
+            else:
+                warnings.append(f"the frame of {time_s} s came too late and was left out")
+        if number > self.now - self.memory:
+            self.too_late = 0
+            self._store(number, poses)
         if not self.observed[-1].any():
             return None
         start = max(0, self.memory - self.now - 1)
         positions, observed = self.positions[start:].copy(), self.observed[start:].copy()
         answer = self.answer(Scene(positions, self.skeleton, self.fps, observed, tuple(self.people), source="stream"))
-        if row is not None:
-            return answer
-        return replace(answer, warnings=(*answer.warnings, f"the frame of {time_s} s came too late and was left out"))
+        return replace(answer, warnings=(*answer.warnings, *warnings)) if warnings else answer
 
-    def _row(self, time_s: float | None) -> int | None:
-        """The remembered row of a frame; newer frames move the memory on, too old ones have none."""
+    def _start_afresh(self) -> None:
+        self.people: list[str] = []
+        self.first_s: float | None = None
+        self.now, self.too_late = -1, 0
+        shape = (self.memory, 0, len(self.skeleton))
+        self.positions, self.observed = np.zeros((*shape, 3), np.float32), np.zeros(shape, bool)
+
+    def _number(self, time_s: float | None) -> int:
+        """Number of a frame on the grid; the first one is 0."""
         if time_s is None:
-            number = self.now + 1
-        elif not np.isfinite(time_s):
+            return self.now + 1
+        if not np.isfinite(time_s):
             raise SceneError(f"the time stamp is {time_s}; expected seconds")
-        else:
-            if self.first_s is None:
-                self.first_s = time_s - max(self.now, 0) / self.fps
-            number = round((time_s - self.first_s) * self.fps)
+        if self.first_s is None:
+            self.first_s = time_s - (self.now + 1) / self.fps
+        return round((time_s - self.first_s) * self.fps)
+
+    def _store(self, number: int, poses: Mapping[str, np.ndarray]) -> None:
+        """Remember a frame; a newer one moves the memory on."""
         ahead = number - self.now
         if ahead > 0:
             kept = max(0, self.memory - ahead)
@@ -87,7 +95,12 @@ class Stream:
                 array[kept:] = 0
             self.now = number
         row = self.memory - 1 - (self.now - number)
-        return row if row >= 0 else None
+        for person, pose in poses.items():
+            column = self._column(person)
+            seen = np.all(np.isfinite(pose), -1)
+            self.positions[row, column] = np.where(seen[:, None], pose, 0)
+            self.observed[row, column] = seen
+        self._forget()
 
     def _column(self, person: str) -> int:
         if person not in self.people:

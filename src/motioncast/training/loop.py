@@ -26,10 +26,10 @@ from motioncast.core.scene import Scene
 from motioncast.core.skeleton import Skeleton
 from motioncast.core.skeletons import SKELETONS
 from motioncast.datasets.windows import Windows, cut
+from motioncast.errors import InputError
 from motioncast.metrics.position import mpjpe_at
 from motioncast.models import build
 from motioncast.training.batches import STORED_FPS, Sampler
-from motioncast.errors import InputError
 from motioncast.training.recipe import Recipe, read_run
 
 

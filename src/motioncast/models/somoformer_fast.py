@@ -63,6 +63,8 @@ class SoMoFormerFastConfig:
 class SoMoFormerFast(nn.Module):
     """World-frame history with masks in, world-frame future of all people out."""
 
+    answer: Tensor
+
     def __init__(self, config: SoMoFormerFastConfig) -> None:
         super().__init__()
         self.config = config

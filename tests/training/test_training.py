@@ -75,7 +75,7 @@ def test_the_log_goes_on_where_it_stopped(run: Path) -> None:
 def test_graph_and_torch_agree_for_any_number_of_people(run: Path, tmp_path: Path) -> None:
     from motioncast.inference.registry import load
     from motioncast.models import build
-    from motioncast.training.export import load_weights
+    from motioncast.training.weights import load_weights
     from motioncast.training.ship import ship
 
     card = ship(run, tmp_path)

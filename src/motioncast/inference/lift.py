@@ -171,9 +171,17 @@ def rigid_bones(history: Scene) -> np.ndarray:
     count = np.maximum(both.sum(0), 1)
     mean = (apart * both).sum(0) / count
     deviation = np.sqrt((np.square(apart - mean) * both).sum(0) / count)
+    spans = np.array([_spans_torso(history.skeleton, joint) for joint in joints])
+    rigid = (both.sum(0) >= 2) & (deviation < CONSTANT * mean) & ~spans
     lengths = np.full(history.observed.shape[1:], np.nan)
-    lengths[:, joints] = np.where((both.sum(0) >= 2) & (deviation < CONSTANT * mean), mean, np.nan)
+    lengths[:, joints] = np.where(rigid, mean, np.nan)
     return lengths
+
+
+def _spans_torso(skeleton: Skeleton, joint: int) -> bool:
+    """Whether a "bone" of a coarse skeleton bridges the flexible torso, as from pelvis to neck; it may stretch."""
+    place, above = skeleton.landmarks[joint], skeleton.landmarks[skeleton.parents[joint]]
+    return place in TORSO and above in TORSO and not (place.endswith("hip") and above == "pelvis")
 
 
 def keep_lengths(positions: np.ndarray, skeleton: Skeleton, lengths: np.ndarray) -> np.ndarray:

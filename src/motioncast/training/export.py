@@ -86,10 +86,3 @@ def halved(graph: onnx.ModelProto) -> onnx.ModelProto:
     graph.graph.node.extend([*casts, *nodes])
     onnx.checker.check_model(graph)
     return graph
-
-
-def load_weights(model: nn.Module, path: Path) -> nn.Module:
-    """The model with the weights of a run's ``best.pt``."""
-    state: Mapping[str, Any] = torch.load(path, map_location="cpu", weights_only=True)
-    model.load_state_dict({name: value.float() for name, value in state.items()})
-    return model.eval()

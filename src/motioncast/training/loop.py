@@ -31,6 +31,7 @@ from motioncast.metrics.position import mpjpe_at
 from motioncast.models import build
 from motioncast.training.batches import STORED_FPS, Sampler
 from motioncast.training.recipe import Recipe, read_run
+from motioncast.training.weights import load_weights
 
 
 def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = print) -> Path:
@@ -60,6 +61,8 @@ def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = pr
     checks = validation(data, skeleton, config.history, config.horizon, config.fps)
     if hasattr(raw, "fit_statistics"):
         raw.fit_statistics(torch.from_numpy(_whole_windows(sampler, recipe, config.history)))
+    if recipe.start:
+        load_weights(raw, Path(recipe.start)).train()
     optimiser = torch.optim.AdamW(raw.parameters(), recipe.learning_rate, weight_decay=recipe.weight_decay)
     mean = copy.deepcopy(raw).requires_grad_(False).eval()
     start, best, spent = 0, math.inf, 0.0

@@ -39,6 +39,7 @@ class Recipe:
         drop: Share of joints of the history that are not seen.
         noise_m: Standard deviation of the noise on seen positions.
         validate_every: Steps between two looks at the validation takes.
+        start: Weights to begin from (a run's ``best.pt``); empty: from scratch.
         folds: If above 0, the run serves error radii: train and validation takes are split into so many parts by
             actor (the couple by take), and one part is left out.
         fold: The part that is left out.
@@ -68,6 +69,7 @@ class Recipe:
     noise_m: float = 0.002
     validate_every: int = 500
     seed: int = 0
+    start: str = ""
     folds: int = 0
     fold: int = 0
     card: dict[str, Any] = field(default_factory=dict)

@@ -17,8 +17,9 @@ from motioncast.core.forecaster import Forecaster
 from motioncast.datasets.windows import cut
 from motioncast.inference.registry import load
 from motioncast.models import build
-from motioncast.training.export import export, load_weights
+from motioncast.training.export import export
 from motioncast.training.recipe import read_run
+from motioncast.training.weights import load_weights
 
 DATA = (
     "CMU motion capture (mocap.cs.cmu.edu, created with funding from NSF EIA-0196217): the training takes of "

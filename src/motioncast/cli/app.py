@@ -18,8 +18,8 @@ COMMANDS = {
     "demo": "Forecast the shipped dancing couple and compare with what really happened.",
     "forecast": "Forecast the people of a scene file, or of several motion files of one world and clock.",
     "info": "Say what a motion file holds: people, frame rate, joints and what they were recognised as.",
-    "view": "Show a scene or a forecast as an interactive page.",
-    "export": "Write a scene or a forecast as npz, csv, trc, bvh, glb or html.",
+    "view": "Show a forecast as an interactive page.",
+    "export": "Write a scene or a forecast as npz, csv, trc, bvh or glb, or a forecast as a page (html).",
     "models": "List the models, trained and simple.",
     "time": "Measure how long a model takes.",
     "train": "Train a model by a recipe.",
@@ -27,7 +27,7 @@ COMMANDS = {
     "plot": "Draw the curves of a training run.",
     "evaluate": "Measure a model by a benchmark.",
     "coverage": "Print how much of what really happened lies within a model's error radii.",
-    "doctor": "Say which versions, extras, models and devices are here; first thing to attach to a report.",
+    "doctor": "Say which versions, extras, models and cores are here; first thing to attach to a report.",
 }
 """Every command: function of that name in the module of that name, and its line of help."""
 

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from motioncast.cli import say
-from motioncast.cli.comparing import error_table, summary
-from motioncast.cli.reading import AS_THE_FILE_SAYS, Reading, moment, read_scene
-from motioncast.cli.writing import open_page, write_forecast
-from motioncast.errors import InputError
+from motioncast.cli.comparing import error_curves, error_table, summary
+from motioncast.cli.reading import AS_THE_FILE_SAYS, Reading, frames_needed, moment, read_scene, seconds_of
+from motioncast.cli.writing import check_suffix, name_of, open_page, page_beside, spare_inputs, write_forecast
+from motioncast.core.forecast import Forecast
+from motioncast.core.scene import Scene
+from motioncast.errors import InputError, SceneError
 
 
 def forecast(
@@ -25,7 +30,8 @@ def forecast(
 ) -> None:
     """Forecast the people of one scene file, or of several motion files of one world and clock.
 
-    Writes NAME.forecast.npz into the current folder, unless --out or --json is given.
+    Writes NAME.forecast.npz into the current folder, unless --out or --json is given: a+b.forecast.npz of a.bvh and
+    b.bvh, a.at1.2.forecast.npz with --at 1.2. A file that was given is never overwritten.
 
     Args:
         scenes: One scene file, or one motion file a person: bvh, amc, npz, csv, trc, c3d.
@@ -35,44 +41,89 @@ def forecast(
         samples: Number of different futures, for models that have several.
         seed: Seed of the samples.
         out: File to write; its suffix tells the format: npz, html, bvh, glb, csv, trc.
-        view: Write the interactive page and open it in the browser.
+        view: Write the interactive page, NAME.forecast.html, and open it in the browser.
         json: Print the forecast as one JSON object.
         reading: How to read files whose header lies.
     """
     if not scenes:
         raise InputError("no motion file came; give one scene file, or one motion file a person")
+    if out is not None:
+        check_suffix(out)
     scene = read_scene(scenes, reading)
     now = scene.frames if at is None else moment(scene, at)
     truth = scene[now:] if now < scene.frames else None
-
-    from motioncast.inference.registry import load
-
-    with say.progress(f"{model} looks ahead") as progress:
-        answer = load(model).forecast(scene[:now], horizon_s=seconds, samples=samples, seed=seed, progress=progress)
+    answer = _answer(scene, now, model, seconds, samples, seed)
     say.note(answer.warnings)
 
-    if out is None and not json:
-        out = Path(f"{scenes[0].stem}.forecast.npz")
-    files = [] if out is None else write_forecast(answer, out, truth)
-    if view:
-        page = (out or Path(f"{scenes[0].stem}.forecast")).with_suffix(".html")
-        if page not in files:
-            files += write_forecast(answer, page, truth)
-        open_page(page)
-
+    usual = Path(f"{name_of(scenes, at)}.forecast.npz")
+    targets = [out] if out is not None else [] if json else [usual]
+    page = out if out is not None and out.suffix.lower() == ".html" else page_beside(out or usual)
+    if view and page not in targets:
+        targets.append(page)
+    spare_inputs([*scenes, reading.map], targets, answer.people)
+    files = [file for target in targets for file in write_forecast(answer, target, truth)]
     if json:
         from motioncast.formats.answers import forecast_answer
 
         say.emit(forecast_answer(answer, files))
-        return
+    else:
+        _tell(answer, truth, files)
+    if view:
+        open_page(page)
+
+
+def _answer(scene: Scene, now: int, model: str, seconds: float | None, samples: int, seed: int) -> Forecast:
+    """The forecast from frame ``now`` on; its warnings name the people who are left out."""
+    from motioncast.inference.registry import load
+
+    forecaster = load(model)
+    needed = frames_needed(forecaster.card, scene.fps)
+    try:
+        with say.progress(f"{model} looks ahead") as progress:
+            answer = forecaster.forecast(scene[:now], horizon_s=seconds, samples=samples, seed=seed, progress=progress)
+    except SceneError as error:
+        if not now < min(needed, scene.frames) or needed > scene.frames:
+            raise
+        raise SceneError(
+            f'--at {seconds_of(now, scene.fps)} leaves {now} frames before it and "{model}" reads {needed}; '
+            f"it works from --at {seconds_of(needed, scene.fps)} on"
+        ) from error
+    return replace(answer, warnings=(*answer.warnings, *left_out(scene, now, answer.people, needed)))
+
+
+def left_out(scene: Scene, now: int, forecast: tuple[str, ...], needed: int) -> list[str]:
+    """Who is in the scene but not in the forecast, a sentence each, and the latest moment that includes everybody.
+
+    Args:
+        scene: The whole scene.
+        now: Number of its frames that are history.
+        forecast: The people that are forecast.
+        needed: Frames of history that the model needs.
+    """
+    there = scene.observed.any(-1)  # (time, people)
+    together = 1 + np.flatnonzero(there[:now].all(1))
+    together = together[together >= needed]
+    advice = f"; --at {seconds_of(together[-1], scene.fps)} includes everybody" if len(together) else ""
+    sentences = []
+    for person, name in enumerate(scene.people):
+        if name in forecast:
+            continue
+        before = np.flatnonzero(there[:now, person])
+        if len(before):
+            last = f"ends at {(before[-1] + 1) / scene.fps:.2f} s, before now ({now / scene.fps:.2f} s),"
+        else:
+            last = f"is not seen before now ({now / scene.fps:.2f} s)"
+        sentences.append(f"{name} {last} and is not forecast{advice}")
+    return sentences
+
+
+def _tell(answer: Forecast, truth: Scene | None, files: list[Path]) -> None:
     who = "1 person" if len(answer.people) == 1 else f"{len(answer.people)} people"
     print(f"{answer.card.name}: {who}, {answer.horizon_s:.2f} s ahead at {answer.fps:g} frames a second\n")
     summary(answer)
     print()
     if truth is not None:
-        from motioncast.metrics.curve import error_curve
-
-        error_table({answer.card.name: error_curve(answer, truth)}, answer.fps)
+        error_table(error_curves(answer, truth), answer.fps)
         print()
     for file in files:
         print(f"written: {file}")

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import ceil
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
 from motioncast.cli.say import note
+from motioncast.core.card import ModelCard
 from motioncast.core.scene import Scene
 from motioncast.errors import InputError
 
@@ -36,7 +38,8 @@ def read_scene(paths: Sequence[Path], reading: Reading = AS_THE_FILE_SAYS) -> Sc
 
     named = None if reading.map is None else read_map(reading.map)
     scene = load_scene(*paths, up=reading.up, unit=reading.unit, fps=reading.fps, named=named)
-    note(scene.remarks)
+    if not all(path.suffix.lower() == ".npz" for path in paths):  # those keep what was said of the original file
+        note(scene.remarks)
     return scene
 
 
@@ -52,6 +55,26 @@ def moment(scene: Scene, seconds: float) -> int:
             f"--at {seconds:g} lies outside the motion of {scene.duration_s:.2f} s; give a moment within it"
         )
     return frames
+
+
+def seconds_of(frames: int, fps: float) -> str:
+    """The moment after so many frames, as --at takes it.
+
+    Example:
+        >>> seconds_of(29, fps=30)
+        '0.967'
+    """
+    return f"{round(frames / fps, 3):g}"
+
+
+def frames_needed(card: ModelCard, fps: float) -> int:
+    """Frames at a scene's rate that span the history of a model.
+
+    Example:
+        >>> frames_needed(ModelCard("m", "s", "forecast", "any", history=15, horizon=45, fps=15), fps=30)
+        29
+    """
+    return ceil((card.history - 1) / card.fps * fps - 1e-6) + 1
 
 
 def holds_forecast(path: Path) -> bool:

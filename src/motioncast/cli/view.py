@@ -5,23 +5,36 @@ from __future__ import annotations
 from pathlib import Path
 
 from motioncast.cli.reading import holds_forecast
-from motioncast.cli.writing import open_page, write_forecast
+from motioncast.cli.writing import check_suffix, open_page, page_beside, write_forecast
 from motioncast.errors import InputError
 
 
-def view(file: Path, /, *, out: Path | None = None, closed: bool = False) -> None:
+def view(*files: Path, out: Path | None = None, closed: bool = False) -> None:
     """Show a forecast as an interactive page.
 
+    Motion without a forecast has no page: motioncast forecast FILE --view makes both.
+
     Args:
-        file: A forecast (npz).
-        out: Page to write. Default: the file's name with .html, beside it.
+        files: A forecast (npz), one.
+        out: Page to write. Default: NAME.forecast.html beside the forecast.
         closed: Write the page and do not open it.
     """
+    from motioncast.formats.files import read_bytes
     from motioncast.formats.load import load_forecast, load_truth
 
+    together = " ".join(map(str, files))
+    if len(files) != 1:
+        came = f"{len(files)} files came" if files else "no file came"
+        make = f"motioncast forecast {together or 'FILE'} --view"
+        raise InputError(f"{came}; view shows one forecast, and to forecast motion files use: {make}")
+    (file,) = files
+    read_bytes(file, 1)  # a missing file is the better news than one without a forecast
     if not holds_forecast(file):
-        raise InputError(f"{file} holds no forecast; make one with: motioncast forecast {file} --view")
-    page = out or file.with_suffix(".html")
+        raise InputError(
+            f"{file} holds no forecast, and only forecasts can be shown; make one with: motioncast forecast {file} --view"
+        )
+    page = out or page_beside(file)
+    check_suffix(page, (".html",))
     write_forecast(load_forecast(file), page, load_truth(file))
     print(f"written: {page}")
     if not closed:

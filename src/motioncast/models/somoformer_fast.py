@@ -27,6 +27,9 @@ from motioncast.nn.dct import dct_matrix, exact
 from motioncast.nn.gaps import fill_gaps
 from motioncast.nn.losses import LIMBS, mean_distance, with_true_lengths
 
+SEAM_FADES = 0.7
+"""What is left of a disagreement at the seam after each frame."""
+
 FAR = -1e9
 """Attention score of a token that is not there."""
 
@@ -46,6 +49,8 @@ class SoMoFormerFastConfig:
         feed_forward: Hidden channels of the feed-forward nets.
         coefficients: DCT coefficients of the answer that are predicted; higher ones stay those of the padding.
         dropout: Share of dropped channels in training.
+        path_share: How much of the path that it foresees the trained model believes; the rest stands still.
+        seam_share: How much of the last step's motion the first step of the answer must keep.
     """
 
     skeleton: str = "mrt15"
@@ -58,6 +63,8 @@ class SoMoFormerFastConfig:
     feed_forward: int = 768
     coefficients: int = 30
     dropout: float = 0.1
+    path_share: float = 1.0
+    seam_share: float = 0.0
 
 
 class SoMoFormerFast(nn.Module):
@@ -118,8 +125,26 @@ class SoMoFormerFast(nn.Module):
         joints = self.norm(tokens[:, : self.joints]).view(batch, people, self.joints, -1)
         coefficients = self.head(joints).view(batch, people, self.joints, 3, self.config.coefficients)
         change = exact(coefficients, self.answer)
-        future = own[:, -1:] + change.permute(0, 4, 1, 2, 3)
+        change = change.permute(0, 4, 1, 2, 3)
+        if not self.training:
+            change = self.tempered(change, own[:, -1:] - own[:, -2:-1])
+        future = own[:, -1:] + change
         return turn(future, heading[:, None, :, None]) + origin[:, None, :, None]
+
+    def tempered(self, change: Tensor, step: Tensor) -> Tensor:
+        """The change of a trained model, less sure of itself where validation takes say so.
+
+        On takes that it has not seen a model overrates the paths that it foresees, and its first step does not
+        quite go on with the last one seen; that disagreement is made good in part and fades within half a second.
+
+        Args:
+            change: Displacement from the last pose, ``(B, F, P, J, 3)``.
+            step: The last step that was seen, ``(B, 1, P, J, 3)``.
+        """
+        path = change[..., self.root, :].mean(-2, keepdim=True)
+        change = change - (1 - self.config.path_share) * path
+        fading = SEAM_FADES ** torch.arange(change.shape[1], device=change.device, dtype=change.dtype)
+        return change + self.config.seam_share * (step - change[:, :1]) * fading[:, None, None, None]
 
     def loss(self, answer: Tensor, truth: Tensor, observed: Tensor) -> Tensor:
         """Mean distance of the joints, the error that is reported, with bones as they came and with true ones."""

@@ -1,7 +1,8 @@
 // Bodies: one mesh, bent on the graphics card by a matrix for each bone.
 
 import {
-  BufferAttribute, BufferGeometry, Color, DoubleSide, FrontSide, Matrix4, Mesh, Quaternion, ShaderMaterial, Vector3,
+  AlwaysStencilFunc, BufferAttribute, BufferGeometry, Color, DoubleSide, FrontSide, KeepStencilOp, Matrix4, Mesh,
+  NotEqualStencilFunc, Quaternion, ReplaceStencilOp, ShaderMaterial, Vector3,
 } from "three";
 import type { Numbers, Page } from "./data";
 import { between } from "./track";
@@ -42,13 +43,15 @@ void main() {
   #include <colorspace_fragment>
 }`;
 
+// see-through, a little darker where it is turned from the sky, with a soft outline
 const GHOST = `
 uniform vec3 color;
 varying vec3 facing;
 varying vec3 toEye;
 void main() {
-  float rim = 1.0 - abs(dot(normalize(facing), normalize(toEye)));
-  gl_FragColor = vec4(color, 0.07 + 0.83 * smoothstep(0.58, 0.98, rim));
+  vec3 n = normalize(facing);
+  float rim = 1.0 - max(dot(n, normalize(toEye)), 0.0);
+  gl_FragColor = vec4(color, 0.11 + 0.06 * (1.0 - n.z) + 0.45 * smoothstep(0.5, 1.0, rim));
   #include <colorspace_fragment>
 }`;
 
@@ -112,12 +115,16 @@ export function bodyGeometry(page: Page): BufferGeometry {
   return geometry;
 }
 
+/**
+ * A body; a ghost is drawn after the solid bodies and only beside them: lines across a solid body, in front of it or
+ * where the two pass through one another, would read as scratches.
+ */
 export class BodyMesh extends Mesh<BufferGeometry, ShaderMaterial> {
   readonly bones: Matrix4[];
 
   constructor(geometry: BufferGeometry, bones: number, ghost: boolean) {
     const matrices = Array.from({ length: bones }, () => new Matrix4());
-    super(geometry, new ShaderMaterial({
+    const material = new ShaderMaterial({
       vertexShader: VERTEX,
       fragmentShader: ghost ? GHOST : SOLID,
       defines: { BONES: bones },
@@ -125,9 +132,28 @@ export class BodyMesh extends Mesh<BufferGeometry, ShaderMaterial> {
       transparent: ghost,
       depthWrite: !ghost,
       side: ghost ? FrontSide : DoubleSide,
-    }));
+      stencilWrite: true,
+      stencilRef: 1,
+      stencilFunc: ghost ? NotEqualStencilFunc : AlwaysStencilFunc,
+      stencilZPass: ghost ? KeepStencilOp : ReplaceStencilOp,
+    });
+    super(geometry, material);
     this.bones = matrices;
     this.frustumCulled = false;
+    if (ghost) this.add(this.nearest());
+  }
+
+  /** The depth of the nearest surface, drawn first, so that a ghost does not show through itself. */
+  private nearest(): Mesh {
+    const depth = this.material.clone();
+    depth.uniforms = this.material.uniforms;
+    depth.colorWrite = false;
+    depth.depthWrite = true;
+    const mesh = new Mesh(this.geometry, depth);
+    mesh.frustumCulled = false;
+    mesh.renderOrder = 4;
+    this.renderOrder = 5;
+    return mesh;
   }
 
   paint(color: Color): void {

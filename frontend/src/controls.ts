@@ -62,8 +62,6 @@ export class Controls {
     document.title = about.title;
     get("title").textContent = about.title;
     get("model").textContent = about.card.name;
-    get("caption").textContent = "Grey: what was seen. Colour: what motioncast expects."
-      + (about.truth ? " Outline: what really happened." : "");
     const people = get("people");
     about.people.forEach(({ id, guessed }, person) => {
       const item = document.createElement("li");
@@ -154,6 +152,7 @@ export class Controls {
       f: () => this.toggle("forecast"),
       t: () => this.toggle("truth"),
       p: () => this.toggle("paths"),
+      w: () => this.toggle("stood"),
       b: () => this.next("look", LOOKS),
       e: () => this.next("doubt", DOUBTS),
       l: () => get("loop").click(),
@@ -170,6 +169,11 @@ export class Controls {
     const { state, about } = this;
     const ahead = state.time > 1e-3;
     document.body.classList.toggle("ahead", ahead);
+    get("caption").textContent = [
+      "Grey: what was seen. Colour: what motioncast expects.",
+      about.truth ? "See\u2011through: what really happened." : "",
+      state.layers.has("stood") ? "Thin grey lines: where they stood at now." : "",
+    ].filter(Boolean).join(" ");
     const whole = state.time.toFixed(2).replace("-", "−");
     get("clock").textContent = state.time > -0.005 && !ahead ? "now" : `${ahead ? "+" : ""}${whole} s`;
     get("phase").textContent = ahead ? "what motioncast expects" : "what was seen";
@@ -183,7 +187,9 @@ export class Controls {
     get("loop").setAttribute("aria-pressed", `${state.loop}`);
     get("more").setAttribute("aria-expanded", `${document.body.classList.contains("open")}`);
     for (const button of document.querySelectorAll<HTMLElement>("button[data-layer]")) {
-      button.setAttribute("aria-pressed", `${state.layers.has(button.dataset.layer as Layer)}`);
+      const on = state.layers.has(button.dataset.layer as Layer);
+      button.setAttribute(button.role === "switch" ? "aria-checked" : "aria-pressed", `${on}`);
+      if (button.role === "switch") button.textContent = on ? "On" : "Off";
     }
     for (const button of document.querySelectorAll<HTMLElement>("button[data-set]")) {
       const [key, value] = button.dataset.set!.split(":");

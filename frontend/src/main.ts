@@ -55,6 +55,7 @@ async function start(): Promise<void> {
   onThemeChange(() => { stage.paint(); change(false); });
   const box = (id: string) => document.getElementById(id)!.getBoundingClientRect();
   const resize = () => {
+    document.body.style.setProperty("--errors", `${errors.offsetHeight}px`); // in narrow windows the clock stands on it
     // in small windows the clock stands at the bottom
     const low = Math.min(box("bar").top, box("now").top > canvas.clientHeight / 2 ? box("now").top : Infinity);
     const beside = canvas.clientWidth > 760;

@@ -19,7 +19,7 @@ export class Stage {
   private readonly renderer: WebGLRenderer;
   private readonly world = new Scene();
   private readonly main: Track;
-  private readonly last: Track; // the last seen frame, shown beside the forecast
+  private readonly stood: Track; // the last seen frame, shown beside the forecast on request
   private readonly truth: Track | null;
   private readonly samples: Track[];
   private readonly colors: Color[];
@@ -45,22 +45,22 @@ export class Stage {
     const people = about.people.length, joints = about.skeleton.names.length;
     const array = (name: string) => arrays.get(name)!;
     this.main = new Track(array("main/positions"), array("main/observed"), 1 - about.now);
-    this.last = new Track(array("main/positions"), array("main/observed"), 1 - about.now);
-    this.last.seek(0);
+    this.stood = new Track(array("main/positions"), array("main/observed"), 1 - about.now);
+    this.stood.seek(0);
     this.truth = about.truth ? new Track(array("truth/positions"), array("truth/observed"), 0) : null;
     this.samples = Array.from({ length: about.samples - 1 }, (_, index) =>
       new Track(array(`sample/${index}`), array("sample/observed"), 0));
     this.radii = about.levels.map((level) => array(`radius/${level}`));
     this.colors = about.people.map((_, person) => personColor(person));
 
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "low-power" });
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, stencil: true, powerPreference: "low-power" });
     const { middle, reach, apart, facing } = this.extent();
     this.eye = new Eye(canvas, facing, apart);
     this.floor = new Floor(middle, reach);
     this.sticks = new Sticks(people, joints, about.skeleton.bones, THICK);
     this.truthSticks = new Sticks(people, joints, about.skeleton.bones, THIN);
     this.lines = new Lines((about.samples + 1) * people * about.skeleton.bones.length, 0.5);
-    this.shadows = new Discs(people * 6, "shadow");
+    this.shadows = new Discs(2 * people * (1 + about.skeleton.feet.length), "shadow"); // of the truth too
     this.rings = new Discs(people * about.levels.length, "ring");
     this.balls = new Discs(people * about.levels.length * joints, "ball");
     this.world.add(
@@ -74,7 +74,6 @@ export class Stage {
         this.bodies.push(new BodyMesh(geometry, about.bones, false));
         this.ghosts.push(new BodyMesh(geometry, about.bones, true));
       }
-      this.ghosts.forEach((ghost) => { ghost.renderOrder = 4; });
       this.world.add(...this.bodies, ...this.ghosts);
     }
     this.paint();
@@ -162,13 +161,13 @@ export class Stage {
   }
 
   private tint(person: number, ahead: boolean): Color {
-    return ahead ? this.colors[person] : this.look.seen.clone().lerp(this.colors[person], 0.1);
+    return ahead ? this.colors[person] : this.look.seen.clone().lerp(this.colors[person], 0.05);
   }
 
   private drawLines(state: State, frame: number, ahead: boolean): void {
     const { bones } = this.page.about.skeleton;
     this.lines.begin();
-    if (ahead && state.layers.has("seen")) this.lines.draw(this.last, bones, () => this.look.seen);
+    if (ahead && state.layers.has("stood")) this.lines.draw(this.stood, bones, () => this.look.seen);
     if (ahead && state.layers.has("forecast")) {
       for (const sample of this.samples.slice(0, state.samples - 1)) {
         sample.seek(frame);
@@ -184,7 +183,7 @@ export class Stage {
     this.rings.begin();
     this.balls.begin();
     const shadow = (track: Track, person: number, strength: number) => {
-      const hips = track.middle(person, skeleton.hips);
+      const hips = track.middle(person, skeleton.hips) ?? track.middle(person, track.seen(person));
       if (hips) this.shadows.mark(hips[0], hips[1], 0.002, 0.42, this.look.shadow, 0.3 * strength);
       for (const foot of skeleton.feet) {
         const spot = track.middle(person, [foot]);

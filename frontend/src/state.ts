@@ -3,7 +3,7 @@
 export const CAMERAS = ["follow", "top", "front", "free"] as const;
 export const LOOKS = ["bodies", "bones"] as const;
 export const DOUBTS = ["off", "floor", "joints"] as const;
-export const LAYERS = ["seen", "forecast", "truth", "paths"] as const;
+export const LAYERS = ["seen", "forecast", "truth", "paths", "stood"] as const;
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4] as const;
 
 export type Layer = (typeof LAYERS)[number];
@@ -37,7 +37,7 @@ export function readState(first: number, last: number, samples: number): State {
     camera: one(CAMERAS, hash.get("camera"), "follow"),
     look: one(LOOKS, hash.get("look"), "bodies"),
     doubt: one(DOUBTS, hash.get("doubt"), "floor"),
-    layers: new Set(layers === null ? LAYERS : LAYERS.filter((layer) => layers.split(",").includes(layer))),
+    layers: new Set(LAYERS.filter((layer) => layers?.split(",").includes(layer) ?? layer !== "stood")),
     samples: Math.min(Math.max(Number.parseInt(hash.get("samples") ?? "") || samples, 1), samples),
   };
 }

@@ -45,8 +45,14 @@ export class Track {
     return true;
   }
 
-  /** Where the middle of these joints is; null when one of them is not seen. */
+  /** The joints of a person that are seen. */
+  seen(person: number): number[] {
+    return Array.from({ length: this.joints }, (_, joint) => joint).filter((joint) => this.sees(person, joint));
+  }
+
+  /** Where the middle of these joints is; null when one of them is not seen, or when there are none. */
   middle(person: number, joints: number[]): [number, number, number] | null {
+    if (joints.length === 0) return null;
     const sum: [number, number, number] = [0, 0, 0];
     for (const joint of joints) {
       if (!this.sees(person, joint)) return null;

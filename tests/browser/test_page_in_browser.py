@@ -72,13 +72,13 @@ def test_it_is_drawn_and_asks_for_nothing_but_itself(browser: chromium.Chromium,
     assert browser.evaluate("document.getElementById('failed').hidden") is True
 
 
-@pytest.mark.parametrize("key", ["f", "t", "s", "p", "b", "e", "2", "3"])
+@pytest.mark.parametrize("key", ["f", "t", "s", "p", "w", "b", "e", "2", "3"])
 def test_a_key_changes_the_picture_and_changes_it_back(browser: chromium.Chromium, page: Path, key: str) -> None:
     browser.open(page, "t=0.6")
     before = browser.picture(SCENE)
     browser.key(key)
     assert browser.picture(SCENE) != before
-    if key in "ftsp":
+    if key in "ftspw":
         browser.key(key)
         browser.evaluate("document.activeElement.blur()")
         assert browser.picture(SCENE) == before
@@ -122,6 +122,62 @@ def test_the_address_keeps_the_view(browser: chromium.Chromium, page: Path) -> N
     assert complaints(browser) == []
 
 
+def test_a_switch_says_whether_it_is_on(browser: chromium.Chromium, page: Path) -> None:
+    browser.open(page, "t=0.5")
+
+    def switch(layer: str) -> object:
+        found = f"document.querySelector('[role=switch][data-layer={layer}]')"
+        return browser.evaluate(f"[{found}.getAttribute('aria-checked'), {found}.textContent]")
+
+    assert switch("paths") == ["true", "On"]
+    assert switch("stood") == ["false", "Off"], "nobody asked for figures of the past beside the forecast"
+    caption = "document.getElementById('caption').textContent"
+    assert "stood" not in str(browser.evaluate(caption))
+    browser.evaluate("document.querySelector('[role=switch][data-layer=stood]').click()")
+    browser.key("p")
+    assert [switch("paths"), switch("stood")] == [["false", "Off"], ["true", "On"]]
+    assert "where they stood at now" in str(browser.evaluate(caption))
+
+
+def test_the_card_says_where_the_recording_ends(browser: chromium.Chromium, walkers: Scene, tmp_path: Path) -> None:
+    card = ModelCard("somoformer-fast", "SoMoFormer", "forecast", "mrt15", 15, 45, 15.0)
+    ahead = walkers.positions[None, 20:] + np.array([0, 1.04, 0], np.float32)
+    write_page(Forecast(ahead, walkers[:20], walkers.people, card), tmp_path / "short.html", walkers[20:44])
+    browser.open(tmp_path / "short.html", "t=0.5")
+    value = "document.querySelector('#errors b').textContent"
+    assert browser.evaluate(value) == "104 cm"
+    browser.evaluate("window.__mc.seek(1.2)")
+    assert browser.evaluate(value) == "your recording ends at +0.8 s"
+    browser.evaluate("window.__mc.seek(-0.2)")
+    assert browser.evaluate(value) == "–"
+
+
+def test_the_truth_is_drawn_beside_the_forecast_and_not_across_it(
+    browser: chromium.Chromium, walkers: Scene, tmp_path: Path
+) -> None:
+    card = ModelCard("somoformer-fast", "SoMoFormer", "forecast", "mrt15", 15, 45, 15.0)
+    write_page(Forecast(walkers.positions[None, 20:], walkers[:20], walkers.people, card), tmp_path / "exact.html",
+               walkers[20:])  # fmt: skip
+    browser.open(tmp_path / "exact.html", "t=0.5&layers=forecast,truth")
+    colored = (
+        "(() => { window.__mc.colors();"
+        " const from = document.getElementById('stage'), to = document.createElement('canvas');"
+        " [to.width, to.height] = [from.width, from.height];"
+        " const pen = to.getContext('2d'); pen.drawImage(from, 0, 0);"
+        " const data = pen.getImageData(0, 0, to.width, to.height).data; const found = [];"
+        " for (let i = 0; i < data.length; i += 4)"
+        " if (Math.max(data[i], data[i + 1], data[i + 2]) - Math.min(data[i], data[i + 1], data[i + 2]) > 90)"
+        " found.push(`${i}:${data[i]},${data[i + 1]},${data[i + 2]}`); return found; })()"
+    )
+    both = browser.evaluate(colored)
+    browser.key("t")
+    alone = browser.evaluate(colored)
+    assert isinstance(both, list)
+    assert isinstance(alone, list)
+    assert len(alone) > 500
+    assert len(set(both) ^ set(alone)) < 0.02 * len(alone)
+
+
 def test_help_opens_and_closes(browser: chromium.Chromium, page: Path) -> None:
     browser.open(page, "t=0.5")
     browser.key("?")
@@ -141,6 +197,14 @@ def test_a_phone_shows_all_of_it(browser: chromium.Chromium, page: Path) -> None
         assert box["left"] >= 0
         assert box["right"] <= 390
         assert box["bottom"] <= 844
+    chart = browser.evaluate("document.querySelector('#errors > svg').getBoundingClientRect().width")
+    label = browser.evaluate("document.querySelector('#errors text').getBoundingClientRect().height")
+    assert isinstance(chart, float | int)
+    assert isinstance(label, float | int)
+    assert chart > 320
+    assert label > 11
+    overlap = "document.getElementById('now').getBoundingClientRect().bottom <= errors.getBoundingClientRect().top"
+    assert browser.evaluate(overlap) is True
     assert browser.evaluate("getComputedStyle(document.getElementById('options')).display") == "none"
     browser.evaluate("document.getElementById('more').click()")
     assert browser.evaluate("getComputedStyle(document.getElementById('options')).display") == "grid"

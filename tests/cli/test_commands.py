@@ -1,17 +1,19 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from motioncast.cli.comparing import error_table
+from motioncast.cli.doctor import providers
 from motioncast.cli.evaluate import commit
 from motioncast.cli.info import bone_lengths
 from motioncast.cli.time import measure
 from motioncast.core.scene import Scene
-from motioncast.formats.load import load_forecast, load_truth
+from motioncast.formats.load import load_forecast, load_truth, save_scene
 from motioncast.inference.registry import list_models
 
 
@@ -133,3 +135,40 @@ def test_plotting_without_its_extra_names_the_command(command, monkeypatch: pyte
     done = command("plot", tmp_path)
     assert done.status == 1
     assert 'pip install "motioncast[plot]"' in done.err
+
+
+def test_info_ends_with_what_can_be_done(walk: Path, walkers: Scene, command) -> None:
+    assert command("info", walk).out.splitlines()[-1] == "ready to forecast"
+    Path("names.txt").write_text("left_knee = left_toe\nright_knee = right_toe\n", encoding="utf-8")
+    last = command("info", walk, "--map", "names.txt").out.splitlines()[-1]
+    assert last.startswith("cannot be forecast by somoformer-fast: no joint for left_knee, right_knee; ")
+    save_scene(walkers[:20], "short.npz")
+    assert "it reads 29 at 30 a second" in command("info", "short.npz").out.splitlines()[-1]
+    observed = walkers.observed.copy()
+    observed[-1] = False
+    save_scene(replace(walkers, observed=observed), "gone.npz")
+    assert "nobody is seen in the last frame" in command("info", "gone.npz").out.splitlines()[-1]
+
+
+def test_info_of_a_forecast(walk: Path, command) -> None:
+    assert command("forecast", walk, "--model", "zero-velocity", "--seconds", "1", "--out", "next.npz").status == 0
+    line = "and a forecast by zero-velocity, 1.00 s, of ada, bea; what really happened is"
+    assert f"{line} not known\n" in command("info", "next.npz").out
+    assert command("forecast", walk, "--model", "zero-velocity", "--seconds", "1", "--at", "1").status == 0
+    assert f"{line} in it too, 1.00 s\n" in command("info", "walk.at1.forecast.npz").out
+
+
+def test_notes_of_the_original_file_are_not_said_again(walkers: Scene, command) -> None:
+    save_scene(replace(walkers, remarks=("the unit was guessed",)), "noted.npz")
+    assert command("info", "noted.npz").err == ""
+
+
+def test_doctor_tells_where_it_computes(command) -> None:
+    done = command("doctor")
+    assert "cores" in done.out
+    assert "CPUExecutionProvider" in done.out
+
+
+def test_doctor_survives_a_broken_runtime(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "onnxruntime", None)
+    assert providers().startswith("none (")

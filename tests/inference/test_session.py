@@ -56,7 +56,7 @@ def test_far_from_the_origin_the_answer_is_as_exact(model: GraphForecaster) -> N
     scene = walkers()
     far = replace(scene, positions=scene.positions + np.array([800.0, -600.0, 0.0], np.float32))
     apart = model.forecast(far).samples - model.forecast(scene).samples - np.array([800.0, -600.0, 0.0])
-    assert np.abs(apart).max() < 2e-3  # float32 itself is 6e-5 there, and the history is rounded to it
+    assert np.abs(apart).max() < 5e-3  # the history itself is rounded to 6e-5 there
 
 
 def test_batches_do_not_mix(model: GraphForecaster) -> None:
@@ -67,10 +67,18 @@ def test_batches_do_not_mix(model: GraphForecaster) -> None:
         np.testing.assert_allclose(model.run(history[[index]], observed[[index]])[0], whole[index], atol=1e-5)
 
 
+def test_every_shipped_model_states_its_doubt_and_is_measured() -> None:
+    for card in list_models():
+        if card.parameters:
+            table = np.array(card.radius["levels"]["0.9"])
+            assert table.shape == (card.horizon, len(card.joints)), card.name
+            assert card.radius["n_takes"] > 0
+            assert card.checksum
+            assert card.licence
+
+
 def test_the_radius_grows_with_time_and_nests(model: GraphForecaster) -> None:
     answer = model.forecast(walkers(fps=30, frames=60), horizon_s=4.0)
-    if not model.card.radius:
-        pytest.skip("the card states no radii")
     half, most = answer.radius_m["0.5"], answer.radius_m["0.9"]
     assert half.shape == (120, 15)
     assert (np.diff(half, axis=0) >= -1e-6).all()

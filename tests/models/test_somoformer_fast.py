@@ -79,3 +79,15 @@ def test_true_lengths() -> None:
     kept = with_true_lengths(answer, truth, [(1, 0)])
     torch.testing.assert_close(kept, torch.tensor([[1.0, 0, 0], [3.0, 0, 0]]), atol=1e-4, rtol=0)
     assert math.isclose((kept[1] - kept[0]).norm().item(), 2.0, rel_tol=1e-4)
+
+
+def test_a_tempered_model_believes_less_of_its_path_and_keeps_its_step(history: torch.Tensor) -> None:
+    torch.manual_seed(0)
+    tempered = SoMoFormerFast(SoMoFormerFastConfig(path_share=0.5, seam_share=1.0, **SMALL)).eval()
+    change, step = torch.randn(2, 45, 3, 15, 3), torch.randn(2, 1, 3, 15, 3)
+    answer = tempered.tempered(change, step)
+    torch.testing.assert_close(answer[:, :1], step)
+    torch.testing.assert_close(answer[:, -1, :, 0], 0.5 * change[:, -1, :, 0], atol=1e-4, rtol=0)
+    torch.testing.assert_close(  # the pose within the body is left alone
+        answer[:, -1] - answer[:, -1, :, :1], change[:, -1] - change[:, -1, :, :1], atol=1e-4, rtol=0
+    )

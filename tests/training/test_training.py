@@ -53,6 +53,16 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder.parent
 
 
+PAPER = replace(
+    RECIPE,
+    name="toy-paper",
+    model="somoformer",
+    sizes={"width": 16, "layers": 2, "heads": 2, "feed_forward": 16, "grid_width": 4},
+    steps=2,
+    yaw=True,
+)
+
+
 @pytest.fixture(scope="module")
 def run(data: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run that was stopped after two steps and went on to four."""
@@ -72,22 +82,42 @@ def test_the_log_goes_on_where_it_stopped(run: Path) -> None:
     assert set(entries[0]["validation"]) == {"couple", "crowd"}
 
 
-def test_graph_and_torch_agree_for_any_number_of_people(run: Path, tmp_path: Path) -> None:
+def test_another_recipe_does_not_go_on_in_the_same_folder(run: Path, data: Path) -> None:
+    from motioncast.training.loop import train
+
+    with pytest.raises(InputError, match="another recipe"):
+        train(replace(RECIPE, batch=5), data, run)
+
+
+def test_the_papers_model_trains_and_its_graph_agrees(data: Path, tmp_path: Path) -> None:
+    from motioncast.training.loop import train
+
+    train(PAPER, data, tmp_path, lambda line: None)
+    agree(PAPER, tmp_path)
+
+
+def test_graph_and_torch_agree_for_any_number_of_people(run: Path) -> None:
+    agree(RECIPE, run)
+
+
+def agree(recipe: Recipe, run: Path) -> None:
+    """The exported graph of a run answers as its torch model does."""
     from motioncast.inference.registry import load
     from motioncast.models import build
+    from motioncast.training.loop import final
     from motioncast.training.weights import load_weights
     from motioncast.training.ship import ship
 
-    card = ship(run, tmp_path)
+    card = ship(run)
     assert card.parameters > 0
-    forecaster = load(tmp_path / "toy.onnx")
-    model = load_weights(build(RECIPE.model, RECIPE.sizes), run / "best.pt")
+    forecaster = load(run / f"{recipe.name}.onnx")
+    model = load_weights(build(recipe.model, recipe.sizes), run / "best.pt")
     random = np.random.default_rng(0)
     for people in (1, 2, 5):
         history = random.normal(size=(2, 15, people, 15, 3)).astype(np.float32)
         observed = random.random((2, 15, people, 15)) < 0.9
         with torch.no_grad():
-            expected = model(torch.from_numpy(history), torch.from_numpy(observed)).numpy()
+            expected = final(model(torch.from_numpy(history), torch.from_numpy(observed))).numpy()
         np.testing.assert_allclose(forecaster.run(history, observed), expected, atol=1e-4)  # pyright: ignore
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Literal
 
 from motioncast.cli.reading import AS_THE_FILE_SAYS, Reading, holds_forecast, read_scene
-from motioncast.cli.writing import name_of, spare_inputs, write_forecast
+from motioncast.cli.writing import check_suffix, name_of, spare_inputs, write_forecast
 from motioncast.errors import InputError
 
 
@@ -31,6 +31,8 @@ def export(
     """
     if not files:
         raise InputError("no file came; give a forecast, or the files of a scene")
+    if out is not None:
+        check_suffix(out)
     if out is not None and out.suffix.lower() != f".{to}":
         raise InputError(f"--out {out} does not end in .{to}; let --to and the suffix of --out agree")
     if len(files) == 1 and holds_forecast(files[0]):

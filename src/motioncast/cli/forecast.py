@@ -82,7 +82,7 @@ def _answer(scene: Scene, now: int, model: str, seconds: float | None, samples: 
         with say.progress(f"{model} looks ahead") as progress:
             answer = forecaster.forecast(scene[:now], horizon_s=seconds, samples=samples, seed=seed, progress=progress)
     except SceneError as error:
-        if not now < min(needed, scene.frames) or needed > scene.frames:
+        if not now < needed <= scene.frames:
             raise
         raise SceneError(
             f'--at {seconds_of(now, scene.fps)} leaves {now} frames before it and "{model}" reads {needed}; '
@@ -100,7 +100,7 @@ def left_out(scene: Scene, now: int, forecast: tuple[str, ...], needed: int) -> 
         forecast: The people that are forecast.
         needed: Frames of history that the model needs.
     """
-    there = scene.observed.any(-1)  # (time, people)
+    there = np.asarray(scene.observed.any(-1))  # (time, people)
     together = 1 + np.flatnonzero(there[:now].all(1))
     together = together[together >= needed]
     advice = f"; --at {seconds_of(together[-1], scene.fps)} includes everybody" if len(together) else ""

@@ -6,24 +6,31 @@ from pathlib import Path
 
 import numpy as np
 
-from motioncast.cli.reading import AS_THE_FILE_SAYS, Reading, read_scene
+from motioncast.cli.reading import AS_THE_FILE_SAYS, Reading, frames_needed, holds_forecast, read_scene
 from motioncast.cli.say import table
+from motioncast.core.card import ModelCard
 from motioncast.core.scene import Scene
+from motioncast.core.skeleton import Skeleton
+from motioncast.errors import SkeletonError
 
 
 def info(*files: Path, reading: Reading = AS_THE_FILE_SAYS) -> None:
-    """Say what motion files hold: people, rate, and what each joint was recognised as.
+    """Say what motion files hold: people, rate, what each joint was recognised as, and whether it can be forecast.
 
     Args:
         files: One scene file, or one motion file a person.
         reading: How to read files whose header lies.
     """
     from motioncast.formats.units import stature
+    from motioncast.inference.registry import list_models
 
     scene = read_scene(files, reading)
     print(f"{scene.source}")
     print(f"{scene.frames} frames at {scene.fps:g} a second, {scene.duration_s:.2f} s")
-    print(f"skeleton {scene.skeleton.label}, {len(scene.skeleton)} joints\n")
+    print(f"skeleton {scene.skeleton.label}, {len(scene.skeleton)} joints")
+    if len(files) == 1 and holds_forecast(files[0]):
+        print(forecast_line(files[0]))
+    print()
     rows = []
     for row, person in enumerate(scene.people):
         alone = scene.select((person,))
@@ -47,6 +54,48 @@ def info(*files: Path, reading: Reading = AS_THE_FILE_SAYS) -> None:
             for joint, (name, parent) in enumerate(zip(names, scene.skeleton.parents, strict=True))
         ],
     )
+    default = list_models()[0]
+    reason = obstacle(scene, default)
+    print("\nready to forecast" if reason is None else f"\ncannot be forecast by {default.name}: {reason}")
+
+
+def forecast_line(file: Path) -> str:
+    """What a forecast file adds to its history."""
+    from motioncast.formats.load import load_forecast, load_truth
+
+    answer, truth = load_forecast(file), load_truth(file)
+    happened = "not known" if truth is None else f"in it too, {truth.duration_s:.2f} s"
+    return (
+        f"and a forecast by {answer.card.name}, {answer.horizon_s:.2f} s, of {', '.join(answer.people)}; "
+        f"what really happened is {happened}"
+    )
+
+
+def obstacle(scene: Scene, card: ModelCard) -> str | None:
+    """Why a model cannot forecast from the end of a scene, and what to do; None if it can."""
+    missing = missing_places(card.joints, scene.skeleton)
+    if missing:
+        return f'no joint for {", ".join(missing)}; name them with --map FILE (one "joint = landmark" a line)'
+    needed = frames_needed(card, scene.fps)
+    if scene.frames < needed:
+        return f"{scene.frames} frames are here and it reads {needed} at {scene.fps:g} a second; give a longer motion"
+    there = int(scene.observed[-1].any(-1).sum())
+    if not there:
+        return "nobody is seen in the last frame; forecast from an earlier moment with --at SECONDS"
+    if there > card.people:
+        return f"{there} people are seen in the last frame and it takes at most {card.people}; forecast them in groups"
+    return None
+
+
+def missing_places(wanted: Skeleton, skeleton: Skeleton) -> list[str]:
+    """Places of a skeleton that another has no joint for, and no stand-in."""
+    missing = []
+    for place in wanted.landmarks:
+        try:
+            Skeleton((place,), (-1,), (place,)).map_from(skeleton)
+        except SkeletonError:
+            missing.append(place)
+    return missing
 
 
 def bone_lengths(scene: Scene) -> np.ndarray:

@@ -31,7 +31,8 @@ def view(*files: Path, out: Path | None = None, closed: bool = False) -> None:
     read_bytes(file, 1)  # a missing file is the better news than one without a forecast
     if not holds_forecast(file):
         raise InputError(
-            f"{file} holds no forecast, and only forecasts can be shown; make one with: motioncast forecast {file} --view"
+            f"{file} holds no forecast, and only forecasts can be shown; "
+            f"make one with: motioncast forecast {file} --view"
         )
     page = out or page_beside(file)
     check_suffix(page, (".html",))

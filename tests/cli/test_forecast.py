@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from motioncast.core.scene import Scene
-from motioncast.formats.load import load_forecast, load_scene, load_truth, save_scene
+from motioncast.formats.load import load_forecast, load_scene, load_truth, save_forecast, save_scene
+from motioncast.inference.registry import load
 
 
 def test_writes_the_forecast_beside_nothing_else(walk: Path, command) -> None:
@@ -278,3 +279,9 @@ def test_a_page_is_html(walk: Path, command) -> None:
     before = Path("walk.forecast.npz").read_bytes()
     assert command("view", "walk.forecast.npz", "--closed", "--out", "walk.forecast.npz").status == 2
     assert Path("walk.forecast.npz").read_bytes() == before
+
+
+def test_a_truth_that_lacks_somebody_can_be_shown(walk: Path, walkers: Scene, command) -> None:
+    answer = load("zero-velocity").forecast(walkers[:30])
+    save_forecast(answer, "next.npz", walkers[30:].select(["ada"]))
+    assert command("view", "next.npz", "--closed").status == 0

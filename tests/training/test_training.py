@@ -105,8 +105,8 @@ def agree(recipe: Recipe, run: Path) -> None:
     from motioncast.inference.registry import load
     from motioncast.models import build
     from motioncast.training.loop import final
-    from motioncast.training.weights import load_weights
     from motioncast.training.ship import ship
+    from motioncast.training.weights import load_weights
 
     card = ship(run)
     assert card.parameters > 0

@@ -90,7 +90,7 @@ def write_forecast(forecast: Forecast, path: Path, truth: Scene | None = None, s
     if suffix == ".html":
         from motioncast.view.page import write_page
 
-        errors = {} if truth is None else error_curves(forecast, truth)
+        errors = error_curves(forecast, truth) if truth is not None and _covers(truth, forecast) else {}
         drawn = {name: (forecast.times_s[: len(curve)], curve) for name, curve in errors.items()}
         write_page(forecast, path, truth=truth, curves=drawn)
         return [path]
@@ -99,6 +99,11 @@ def write_forecast(forecast: Forecast, path: Path, truth: Scene | None = None, s
     if suffix == ".npz":
         return list(save_forecast(forecast, path, truth))
     return list(save_scene(forecast.continued(sample), path))
+
+
+def _covers(truth: Scene, forecast: Forecast) -> bool:
+    """Whether a truth, which may come from elsewhere, shows everybody who is forecast, with the same joints."""
+    return set(forecast.people) <= set(truth.people) and truth.skeleton.names == forecast.skeleton.names
 
 
 def make_folder(folder: Path) -> None:

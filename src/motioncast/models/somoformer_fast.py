@@ -107,7 +107,8 @@ class SoMoFormerFast(nn.Module):
         Args:
             history: ``(B, H, P, J, 3)`` metres, world, z up.
             observed: ``(B, H, P, J)`` bool.
-            weights: If given, each layer's attention ``(B * P, heads, J + P, J + P)`` is appended to it.
+            weights: If given, each layer's attention ``(B * P, heads, J + P, J + P)`` is appended to it; the last
+                layer's has the rows of the joints only.
 
         Returns:
             ``(B, F, P, J, 3)`` metres, world.
@@ -120,9 +121,10 @@ class SoMoFormerFast(nn.Module):
         others = self.others_as_seen(history, origin, heading)
         tokens = torch.cat([tokens, others], 2).flatten(0, 1)
         bias = self.presence(observed)
-        for layer in self.layers:
-            tokens = layer(tokens, bias, weights)
-        joints = self.norm(tokens[:, : self.joints]).view(batch, people, self.joints, -1)
+        for number, layer in enumerate(self.layers, 1):
+            last = number == len(self.layers)  # whose tokens of other people nobody reads
+            tokens = layer(tokens, bias, weights, self.joints if last else None)
+        joints = self.norm(tokens).view(batch, people, self.joints, -1)
         coefficients = self.head(joints).view(batch, people, self.joints, 3, self.config.coefficients)
         change = exact(coefficients, self.answer)
         change = change.permute(0, 4, 1, 2, 3)

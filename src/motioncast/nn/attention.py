@@ -29,26 +29,31 @@ class EncoderLayer(nn.Module):
         self.norm_feed = nn.LayerNorm(width)
         self.drop = nn.Dropout(dropout)
 
-    def forward(self, tokens: Tensor, bias: Tensor, weights: list[Tensor] | None = None) -> Tensor:
+    def forward(
+        self, tokens: Tensor, bias: Tensor, weights: list[Tensor] | None = None, first: int | None = None
+    ) -> Tensor:
         """Updated tokens.
 
         Args:
             tokens: ``(batch, tokens, width)``.
             bias: Added to the attention scores, broadcastable to ``(batch, heads, tokens, tokens)``.
             weights: If given, the attention weights ``(batch, heads, tokens, tokens)`` are appended to it.
+            first: Update and return only so many first tokens, where nobody reads the others.
         """
+        kept = tokens[:, :first]
         if self.norm_first:
-            tokens = tokens + self.drop(self.attend(self.norm_attention(tokens), bias, weights))
-            return tokens + self.drop(self.fall(self.drop(functional.gelu(self.rise(self.norm_feed(tokens))))))
-        tokens = self.norm_attention(tokens + self.drop(self.attend(tokens, bias, weights)))
-        return self.norm_feed(tokens + self.drop(self.fall(self.drop(torch.relu(self.rise(tokens))))))
+            kept = kept + self.drop(self.attend(self.norm_attention(tokens), bias, weights, first))
+            return kept + self.drop(self.fall(self.drop(functional.gelu(self.rise(self.norm_feed(kept))))))
+        kept = self.norm_attention(kept + self.drop(self.attend(tokens, bias, weights, first)))
+        return self.norm_feed(kept + self.drop(self.fall(self.drop(torch.relu(self.rise(kept))))))
 
-    def attend(self, tokens: Tensor, bias: Tensor, weights: list[Tensor] | None) -> Tensor:
-        """Multi-head self-attention."""
+    def attend(self, tokens: Tensor, bias: Tensor, weights: list[Tensor] | None, first: int | None) -> Tensor:
+        """Multi-head self-attention of the first tokens."""
         batch, count, width = tokens.shape
         query, key, value = (
             self.project(tokens).view(batch, count, 3, self.heads, width // self.heads).permute(2, 0, 3, 1, 4)
         )
+        query = query[:, :, :first]
         if weights is None:
             mixed = functional.scaled_dot_product_attention(
                 query, key, value, attn_mask=bias, dropout_p=self.dropout if self.training else 0.0
@@ -57,4 +62,4 @@ class EncoderLayer(nn.Module):
             scores = query @ key.transpose(-1, -2) * (width // self.heads) ** -0.5 + bias
             weights.append(scores.softmax(-1))
             mixed = weights[-1] @ value
-        return self.merge(mixed.transpose(1, 2).reshape(batch, count, width))
+        return self.merge(mixed.transpose(1, 2).flatten(2))

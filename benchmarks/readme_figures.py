@@ -1,6 +1,6 @@
 """Write the measured figures into README.md and docs/benchmarks.md, between their marks.
 
-motioncast evaluate MODEL BENCHMARK --data DIR --json > benchmarks/results/BENCHMARK.MODEL.json   # for each
+python benchmarks/evaluate_all.py --data DIR
 python benchmarks/readme_figures.py
 """
 
@@ -43,14 +43,21 @@ def table(benchmark: str, entries: list[dict[str, Any]]) -> str:
     for entry in entries:
         cells = [f"{row['value']:.3f}" if row["unit"] == "1" else f"{row['value']:.0f}" for row in entry["rows"]]
         lines.append(f"| `{entry['model']}` | {' | '.join(cells)} |")
-    return "\n".join([*lines, "", f"Printed by `{entries[0]['command']}` and the like.", ""])
+    return "\n".join([*lines, ""])
+
+
+IN_README = ("cmu-duet", "cmu-crowd")
+"""Benchmarks that the README shows; docs/benchmarks.md shows all."""
+
+FOOT = "All: `python benchmarks/evaluate_all.py --data DIR`; one: `motioncast evaluate MODEL BENCHMARK --data DIR`.\n"
 
 
 def main() -> None:
-    text = "\n".join(table(benchmark, entries) for benchmark, entries in results().items())
-    for path in (ROOT / "README.md", ROOT / "docs" / "benchmarks.md"):
+    found = results()
+    for path, shown in ((ROOT / "README.md", IN_README), (ROOT / "docs" / "benchmarks.md", tuple(found))):
+        text = "\n".join([*(table(benchmark, found[benchmark]) for benchmark in shown), FOOT])
         page = path.read_text(encoding="utf-8")
-        path.write_text(MARKS.sub(lambda marks: f"{marks[1]}{text}{marks[2]}", page), encoding="utf-8")
+        path.write_text(MARKS.sub(lambda marks, text=text: f"{marks[1]}{text}{marks[2]}", page), encoding="utf-8")
         print(f"written: {path.relative_to(ROOT)}")
 
 

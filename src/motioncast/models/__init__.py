@@ -1,16 +1,21 @@
-"""One file a system, in torch, readable like the method section of its paper."""
+"""One file a system, in torch, readable like the method section of its paper.
+
+A model file says at its end what it defines: ``MODEL``, the module, and ``CONFIG``, the dataclass of its sizes.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from importlib import import_module
+from pkgutil import iter_modules
 from typing import Any
 
-MODELS: dict[str, tuple[str, str]] = {
-    "somoformer": ("SoMoFormer", "SoMoFormerConfig"),
-    "somoformer_fast": ("SoMoFormerFast", "SoMoFormerFastConfig"),
-}
-"""Model files, and the names of the model and its configuration in them."""
+from motioncast.errors import InputError
+
+
+def model_names() -> list[str]:
+    """Names of the model files."""
+    return sorted(module.name for module in iter_modules(__path__))
 
 
 def build(name: str, sizes: Mapping[str, Any]) -> Any:
@@ -19,7 +24,11 @@ def build(name: str, sizes: Mapping[str, Any]) -> Any:
     Args:
         name: File of the model.
         sizes: Arguments of its configuration.
+
+    Raises:
+        InputError: If there is no such file.
     """
-    model, config = MODELS[name]
+    if name not in model_names():
+        raise InputError(f'there is no model file "{name}"; use one of {", ".join(model_names())}')
     file = import_module(f"motioncast.models.{name}")
-    return getattr(file, model)(getattr(file, config)(**sizes))
+    return file.MODEL(file.CONFIG(**sizes))

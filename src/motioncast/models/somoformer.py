@@ -218,3 +218,6 @@ class SoMoFormer(nn.Module):
 def shortened(rows: Tensor) -> Tensor:
     """Rows of a table, at most of length 1."""
     return rows / rows.norm(dim=-1, keepdim=True).clamp(min=1)
+
+
+MODEL, CONFIG = SoMoFormer, SoMoFormerConfig

@@ -195,3 +195,6 @@ def turn(vectors: Tensor, heading: Tensor, *, back: bool = False) -> Tensor:
     cosine, sine = heading[..., 0], -heading[..., 1] if back else heading[..., 1]
     x, y, z = vectors.unbind(-1)
     return torch.stack([cosine * x - sine * y, sine * x + cosine * y, z], -1)
+
+
+MODEL, CONFIG = SoMoFormerFast, SoMoFormerFastConfig

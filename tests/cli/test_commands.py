@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from motioncast.benchmarks.run import commit
 from motioncast.cli.comparing import error_table
 from motioncast.cli.doctor import providers
-from motioncast.cli.evaluate import commit
 from motioncast.cli.info import bone_lengths
 from motioncast.cli.time import measure
 from motioncast.core.scene import Scene
@@ -109,6 +109,7 @@ def test_evaluate(command, shared: Path) -> None:
     answer = command("evaluate", "zero-velocity", "somof-strangers", "--data", shared, "--json").answer("result")
     assert answer["rows"][-1]["value"] == pytest.approx(1.0, abs=1e-6)
     assert answer["commit"] == commit()
+    assert answer["setting"]["moments_ms"] == pytest.approx([133.3, 266.7, 533.3, 666.7, 933.3], abs=0.1)
 
 
 def test_errors_that_are_unknown_show_as_such(capsys: pytest.CaptureFixture[str]) -> None:

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from motioncast.datasets.mixer import PERSONAL_SPACE_M, arrange, turned
+from motioncast.datasets.mixer import PERSONAL_SPACE_M, arrange, entries, turned
 
 
 def walk(frames: int, people: int, seed: int) -> np.ndarray:
@@ -16,9 +16,10 @@ def walk(frames: int, people: int, seed: int) -> np.ndarray:
 @given(st.integers(0, 1000))
 def test_strangers_keep_their_distance_and_couples_stay_together(seed: int) -> None:
     couple, single = walk(40, 2, seed), walk(40, 1, seed + 1)
-    scene = arrange([single, couple], 14, np.random.default_rng(seed))
-    if scene is None:
+    arrangement = arrange([single, couple], 14, np.random.default_rng(seed))
+    if arrangement is None:
         return
+    scene = arrangement.positions
     between = np.linalg.norm(couple[:, 0] - couple[:, 1], axis=-1)
     np.testing.assert_allclose(np.linalg.norm(scene[:, 1] - scene[:, 2], axis=-1), between, atol=1e-5)
     for other in (1, 2):
@@ -35,7 +36,8 @@ def test_the_place_depends_on_nothing_after_now() -> None:
     second = arrange([changed, two], 14, np.random.default_rng(7))
     assert first is not None
     assert second is not None
-    np.testing.assert_array_equal(first[:15], second[:15])
+    np.testing.assert_array_equal(first.positions[:15], second.positions[:15])
+    assert first.places == second.places
 
 
 def test_no_arrangement_in_too_small_a_place() -> None:
@@ -54,4 +56,21 @@ def test_sixteen_people_find_room() -> None:
     groups = [walk(60, 1 + seed % 2, seed) for seed in range(11)]
     scene = arrange(groups, 14, np.random.default_rng(0))
     assert scene is not None
-    assert scene.shape[1] == 16
+    assert scene.positions.shape[1] == 16
+
+
+def test_a_scene_can_be_set_down_again_from_its_places() -> None:
+    groups = [walk(40, 1, 3), walk(40, 2, 4)]
+    arrangement = arrange(groups, 14, np.random.default_rng(1))
+    assert arrangement is not None
+    again = []
+    for group, (x, y, angle) in zip(groups, arrangement.places, strict=True):
+        middle = group[14, :, 0].mean(0) * [1, 1, 0]
+        again.append(turned(group - middle.astype(np.float32), angle) + np.array([x, y, 0], np.float32))
+    np.testing.assert_allclose(np.concatenate(again, 1), arrangement.positions, atol=1e-5)
+
+
+def test_late_people_enter_in_the_first_half_of_the_history() -> None:
+    entry = entries((2000, 3), 15, 0.5, np.random.default_rng(0))
+    assert 0.45 < (entry > 0).mean() < 0.55
+    assert entry.max() == 7

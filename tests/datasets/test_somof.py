@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -50,3 +51,42 @@ def test_missing_and_odd_files_are_named(folder: Path) -> None:
     (folder / "3dpw_test_in.json").write_text("[[1, 2], [3, 4]]", encoding="utf-8")
     with pytest.raises(FormatError, match="shape"):
         somof.read(folder)
+
+
+def test_scenes_written_back_are_the_files_to_the_last_bit(folder: Path, tmp_path: Path) -> None:
+    scenes = list(somof.scenes(folder / "3dpw_test_in.json"))
+    assert [(scene.source, scene.frames, scene.fps) for scene in scenes[:2]] == [
+        ("SoMoF test 0", 30, 15.0),
+        ("SoMoF test 1", 30, 15.0),
+    ]
+    again = tmp_path / "again"
+    again.mkdir()
+    files = somof.write(scenes, again)
+    for path in files:
+        read, given = (np.array(json.loads((place / path.name).read_text("utf-8"))) for place in (again, folder))
+        np.testing.assert_array_equal(read.astype(np.float32), given.astype(np.float32))
+    np.testing.assert_array_equal(somof.read(again).positions, somof.read(folder).positions)
+
+
+def test_what_the_files_cannot_hold_is_refused(folder: Path) -> None:
+    scenes = list(somof.scenes(folder / "3dpw_test_in.json"))
+    with pytest.raises(InputError, match="expected 30 at 15"):
+        somof.write([scenes[0], scenes[1][:20]], folder)
+    with pytest.raises(InputError, match="1 people"):
+        somof.write([scenes[0], scenes[1].select(["person 1"])], folder)
+    hidden = replace(scenes[0], observed=np.arange(30)[:, None, None] * np.ones((30, 2, 13)) != 3)
+    with pytest.raises(InputError, match="not observed"):
+        somof.write([hidden], folder)
+    with pytest.raises(InputError, match="no windows"):
+        somof.write([], folder)
+
+
+def test_a_copy_of_one_split_lacks_the_others(folder: Path) -> None:
+    findings = somof.DATASET.check(folder)
+    assert [finding.what for finding in findings if finding.kind == "missing"] == [
+        "*valid_in.json",
+        "*valid_out.json",
+        "*train_in.json",
+        "*train_out.json",
+    ]
+    assert findings[-1].what.startswith("all: 3 scenes of up to 2 people")

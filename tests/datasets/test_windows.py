@@ -21,7 +21,7 @@ def test_every_takes_exact_samples() -> None:
 
 def test_windows_never_cross_takes() -> None:
     windows = cut([scene(70), scene(65)], 15, 45)
-    assert windows.starts == (0, 5, 10, 0, 5)
+    assert windows.starts == ((0,), (5,), (10,), (0,), (5,))
     steps = np.diff(windows.positions[:, :, 0, 0, 0], axis=1)
     np.testing.assert_array_equal(steps, np.ones_like(steps))
 
@@ -30,7 +30,7 @@ def test_a_window_without_the_person_at_now_is_left_out() -> None:
     observed = np.ones((65, 1, 15), bool)
     observed[14] = False
     gap = Scene(scene(65).positions, MRT15, 15, observed)
-    assert cut([gap], 15, 45).starts == (5,)
+    assert cut([gap], 15, 45).starts == ((5,),)
 
 
 def test_the_past_holds_nothing_of_the_future() -> None:

@@ -1,12 +1,14 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
 torch = pytest.importorskip("torch")
 
-from motioncast.models.somoformer_fast import SoMoFormerFast, SoMoFormerFastConfig, turn  # noqa: E402
+from motioncast.models.somoformer_fast import SoMoFormerFast, SoMoFormerFastConfig  # noqa: E402
+from motioncast.nn.frames import turn  # noqa: E402
 from motioncast.nn.losses import with_true_lengths  # noqa: E402
 
 pytestmark = pytest.mark.torch
@@ -40,6 +42,18 @@ def test_moved_and_turned_scenes_have_moved_and_turned_answers(model: SoMoFormer
     heading, shift = torch.stack([angle.cos(), angle.sin()]), torch.tensor([4.0, -7.0, 0.3])
     moved = model(turn(history, heading) + shift, SEEN)
     torch.testing.assert_close(moved, turn(model(history, SEEN), heading) + shift, atol=1e-4, rtol=0)
+
+
+def test_a_mirrored_scene_has_the_mirrored_answer(model: SoMoFormerFast, history: torch.Tensor) -> None:
+    symmetric = SoMoFormerFast(replace(model.config, mirrored=True)).eval()
+    symmetric.load_state_dict(model.state_dict())
+    seen = SEEN.clone()
+    seen[:, :4, 1, 3] = False
+    answer = symmetric(history, seen)
+    image = symmetric(symmetric.mirror(history), seen[..., symmetric.order])
+    torch.testing.assert_close(image, symmetric.mirror(answer), atol=1e-5, rtol=0)
+    expected = (model(history, seen) + model.mirror(model(model.mirror(history), seen[..., model.order]))) / 2
+    torch.testing.assert_close(answer, expected, atol=1e-5, rtol=0)
 
 
 def test_order_and_absent_people_change_nothing(model: SoMoFormerFast, history: torch.Tensor) -> None:

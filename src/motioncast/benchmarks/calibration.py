@@ -12,7 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from motioncast.benchmarks.protocols import Protocol, windows_of
+from motioncast.benchmarks.protocol import Protocol
+from motioncast.benchmarks.protocols import windows_of
 from motioncast.benchmarks.run import forecast_windows
 from motioncast.core.forecaster import Forecaster
 from motioncast.datasets.windows import Windows

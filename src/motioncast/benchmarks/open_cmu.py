@@ -10,21 +10,21 @@ from motioncast.core.scene import Scene
 from motioncast.core.skeleton import Skeleton
 from motioncast.datasets import cmu
 from motioncast.datasets.mixer import arrange
-from motioncast.datasets.windows import COMPOSED, Windows, cut, every
+from motioncast.datasets.windows import COMPOSED, Windows, cut, sampled
 
 CROWD_SCENES = 400
 CROWD_SEED = 2026
 
 
 def single_scenes(data: Path, split: str, fps: float, skeleton: Skeleton) -> list[Scene]:
-    """The takes of single people of one split, every n-th frame, on a skeleton."""
+    """The takes of single people of one split at a rate, on a skeleton."""
     takes = [take for take in cmu.takes(data, split) if take.subject not in cmu.COUPLE]
-    return [every(scene, fps, skeleton) for scene in cmu.read(takes)]
+    return [sampled(scene, fps, skeleton) for scene in cmu.read(takes)]
 
 
 def couple_scenes(data: Path, split: str, fps: float, skeleton: Skeleton) -> list[Scene]:
-    """The couple's takes of one split, every n-th frame, on a skeleton."""
-    return [every(scene, fps, skeleton) for scene in cmu.couples(data, split)]
+    """The couple's takes of one split at a rate, on a skeleton."""
+    return [sampled(scene, fps, skeleton) for scene in cmu.couples(data, split)]
 
 
 def all_but_test(data: Path, fps: float, skeleton: Skeleton) -> tuple[list[Scene], list[Scene]]:
@@ -45,21 +45,26 @@ def fold_of(scene: Scene, folds: int) -> int:
 def crowd(singles: list[Scene], couples: list[Scene], history: int, horizon: int) -> Windows:
     """Scenes of three people, seeded: in every second one two of them are the couple.
 
-    A take is drawn by its number of windows; windows without a gap only.
+    A take is drawn by its number of windows, once a scene; windows without a gap only.
     """
     random = np.random.default_rng(CROWD_SEED)
     alone, together = cut(singles, history, horizon, 1), cut(couples, history, horizon, 1)
     whole = [np.flatnonzero(windows.observed.all((1, 2, 3))) for windows in (alone, together)]
-    positions, takes, starts = [], [], []
+    positions, takes, starts, places = [], [], [], []
     while len(positions) < CROWD_SCENES:
         with_couple = len(positions) % 2 == 0
         drawn = [(alone, int(random.choice(whole[0]))) for _ in range(1 if with_couple else 3)]
         if with_couple:
             drawn.append((together, int(random.choice(whole[1]))))
+        names = [windows.takes[index] for windows, index in drawn]
+        if len(set(names)) < len(names):
+            continue
         scene = arrange([windows.positions[index] for windows, index in drawn], history - 1, random)
         if scene is not None:
-            positions.append(scene)
-            takes.append(COMPOSED.join(windows.takes[index] for windows, index in drawn))
-            starts.append(drawn[0][0].starts[drawn[0][1]])
+            positions.append(scene.positions)
+            places.append(scene.places)
+            takes.append(COMPOSED.join(names))
+            starts.append(tuple(windows.starts[index][0] for windows, index in drawn))
     stacked = np.stack(positions)
-    return Windows(stacked, np.ones(stacked.shape[:-1], bool), tuple(takes), tuple(starts), history)
+    seen = np.ones(stacked.shape[:-1], bool)
+    return Windows(stacked, seen, tuple(takes), tuple(starts), history, places=tuple(places))

@@ -2,64 +2,20 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
 from motioncast.benchmarks import open_cmu
+from motioncast.benchmarks.conditions import CONDITIONS, worsened
+from motioncast.benchmarks.protocol import Protocol
 from motioncast.core.skeletons import SKELETONS
 from motioncast.datasets import ballplay, cmu, somof
 from motioncast.datasets.windows import Windows, cut, every
 from motioncast.errors import InputError
 
-
-@dataclass(frozen=True, slots=True)
-class Protocol:
-    """What makes two figures comparable.
-
-    Attributes:
-        name: Name of the benchmark.
-        skeleton: Name of the joint set.
-        fps: Frames a second.
-        history: Frames of history.
-        horizon: Frames of future.
-        moments: Forecast frames that are scored, from 1.
-        summary: Those of the moments whose mean is divided by that of standing still.
-        metric: ``mpjpe`` (mm, at a moment) or ``vim`` (cm, at a moment).
-        stride: Frames between windows of a take.
-        windows: Which windows, in words.
-    """
-
-    name: str
-    skeleton: str
-    fps: float
-    history: int
-    horizon: int
-    moments: tuple[int, ...]
-    summary: tuple[int, ...]
-    metric: str
-    windows: str
-    stride: int = 5
-
-    def hash(self, windows: Windows) -> str:
-        """A short hash of the protocol and of its windows (positions at 0.1 mm)."""
-        digest = hashlib.sha256(json.dumps(asdict(self), sort_keys=True).encode())
-        digest.update(np.round(windows.positions * 1e4).astype("<i4").tobytes())
-        digest.update(windows.observed.tobytes())
-        return digest.hexdigest()[:16]
-
-
-def _cmu(name: str, windows: str) -> Protocol:
-    return Protocol(name, "mrt15", 15.0, 15, 45, (3, 6, 15, 30, 45), (15, 30, 45), "mpjpe", windows)
-
-
-def _somof(name: str, windows: str, stride: int = 5) -> Protocol:
-    moments = (2, 4, 8, 10, 14)  # printed as 100 240 500 640 900 ms; truly 133 267 533 667 933
-    return Protocol(name, "somof13", 15.0, 16, 14, moments, moments, "vim", windows, stride)
+Builder = Callable[[Path, Protocol, str], Windows]
+"""Builds the windows of a protocol's split from a folder of data."""
 
 
 def _duet(data: Path, protocol: Protocol, split: str) -> Windows:
@@ -68,10 +24,18 @@ def _duet(data: Path, protocol: Protocol, split: str) -> Windows:
     return cut(couples, protocol.history, protocol.horizon, protocol.stride)
 
 
-def _solo(data: Path, protocol: Protocol, split: str) -> Windows:
+def _single(data: Path, protocol: Protocol, split: str) -> Windows:
     skeleton = SKELETONS[protocol.skeleton]
     singles = open_cmu.single_scenes(data, split, protocol.fps, skeleton)
     return cut(singles, protocol.history, protocol.horizon, protocol.stride)
+
+
+def _solo(data: Path, protocol: Protocol, split: str) -> Windows:
+    # 5 frames at 25 a second are 12 captured ones at 60: "now" falls on a captured frame, and the history is free of
+    # what comes later
+    skeleton = SKELETONS[protocol.skeleton]
+    singles = open_cmu.single_scenes(data, split, protocol.fps, skeleton)
+    return cut(singles, protocol.history, protocol.horizon, protocol.stride, first=(1 - protocol.history) % 5)
 
 
 def _crowd(data: Path, protocol: Protocol, split: str) -> Windows:
@@ -83,7 +47,7 @@ def _crowd(data: Path, protocol: Protocol, split: str) -> Windows:
 
 def _only_test(protocol: Protocol, split: str) -> None:
     if split != "test":
-        raise InputError(f"{protocol.name} has test takes only; choose on cmu-duet, cmu-crowd or cmu-solo")
+        raise InputError(f"{protocol.name} has test takes only; choose on cmu-duet, cmu-crowd or cmu-single")
 
 
 def _ballplay(data: Path, protocol: Protocol, split: str) -> Windows:
@@ -105,14 +69,46 @@ def _somof_3dpw(data: Path, protocol: Protocol, split: str) -> Windows:
     return somof.read(data, split)
 
 
-BENCHMARKS: dict[str, tuple[Protocol, Callable[[Path, Protocol, str], Windows]]] = {
-    "cmu-duet": (_cmu("cmu-duet", "the couple's takes, every 5 frames"), _duet),
-    "cmu-crowd": (_cmu("cmu-crowd", "400 composed scenes of three, every second one with the couple"), _crowd),
-    "cmu-solo": (_cmu("cmu-solo", "takes of single people, every 5 frames"), _solo),
-    "somof": (_somof("somof", "SoMoF's windows of 3DPW, from your own copy"), _somof_3dpw),
-    "somof-ballplay": (_somof("somof-ballplay", "all clips of the ball players, every 5 frames"), _ballplay),
-    "somof-strangers": (_somof("somof-strangers", "CMU's subjects 32 and 91, every 5 frames"), _strangers),
-}
+def _cmu(name: str, windows: str) -> Protocol:
+    return Protocol(name, "mrt15", 15.0, 15, 45, (3, 6, 15, 30, 45), (15, 30, 45), "mpjpe", windows)
+
+
+def _somof(name: str, windows: str) -> Protocol:
+    moments = (2, 4, 8, 10, 14)
+    return Protocol(name, "somof13", 15.0, 16, 14, moments, moments, "vim", windows)
+
+
+_SECOND = (2, 4, 8, 10, 14, 25)
+"""80, 160, 320, 400, 560 and 1000 ms at 25 frames a second, as single people are scored everywhere."""
+
+_SOLO = "takes of single people, every 5 frames"
+
+_CLEAN: list[tuple[Protocol, Builder]] = [
+    (_cmu("cmu-duet", "the couple's takes, every 5 frames"), _duet),
+    (_cmu("cmu-crowd", "400 composed scenes of three, every second one with the couple"), _crowd),
+    (_cmu("cmu-single", _SOLO), _single),
+    (Protocol("cmu-solo", "mrt15", 25.0, 25, 25, _SECOND, _SECOND, "mpjpe", _SOLO), _solo),
+    (Protocol("cmu-solo-4s", "mrt15", 25.0, 25, 100, (25, 50, 75, 100), (25, 50, 75, 100), "mpjpe", _SOLO), _solo),
+    (_somof("somof", "SoMoF's windows of 3DPW, from your own copy"), _somof_3dpw),
+    (_somof("somof-ballplay", "all clips of the ball players, every 5 frames"), _ballplay),
+    (_somof("somof-strangers", "CMU's subjects 32 and 91, every 5 frames"), _strangers),
+]
+
+TRACKED = ("cmu-duet", "cmu-crowd", "cmu-solo")
+"""Benchmarks that are also run as a tracker would see them."""
+
+
+def _all() -> dict[str, tuple[Protocol, Builder]]:
+    found = {protocol.name: (protocol, builder) for protocol, builder in _CLEAN}
+    for name in TRACKED:
+        protocol, builder = found[name]
+        for condition in CONDITIONS:
+            worse = replace(protocol, name=f"{name}-{condition}", condition=condition)
+            found[worse.name] = (worse, builder)
+    return found
+
+
+BENCHMARKS: dict[str, tuple[Protocol, Builder]] = _all()
 """Benchmarks by name: the protocol, and what builds its windows from a folder of data."""
 
 
@@ -125,16 +121,7 @@ def windows_of(name: str, data: Path, split: str = "test") -> tuple[Protocol, Wi
     if name not in BENCHMARKS:
         raise InputError(f'there is no benchmark "{name}"; use one of {", ".join(BENCHMARKS)}')
     protocol, builder = BENCHMARKS[name]
-    return protocol, builder(data, protocol, split)
-
-
-def manifest(windows: Windows) -> str:
-    """A table of windows: takes, start of the first one, and a checksum of the positions at 0.1 mm.
-
-    Whoever builds the windows from his own copy of the data can tell that they are the same.
-    """
-    lines = ["window,takes,start,sha256"]
-    for index, (take, start) in enumerate(zip(windows.takes, windows.starts, strict=True)):
-        tenths_mm = np.round(windows.positions[index] * 1e4).astype("<i4")
-        lines.append(f"{index},{take},{start},{hashlib.sha256(tenths_mm.tobytes()).hexdigest()[:16]}")
-    return "\n".join(lines) + "\n"
+    windows = builder(data, protocol, split)
+    if protocol.condition in CONDITIONS:
+        windows = worsened(windows, protocol.condition, protocol.seed)
+    return protocol, windows

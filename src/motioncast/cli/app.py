@@ -26,6 +26,7 @@ COMMANDS = {
     "ship": "Write the graph and the card of a trained run, with calibrated error radii.",
     "plot": "Draw the curves of a training run.",
     "evaluate": "Measure a model by a benchmark.",
+    "leaderboard": "Show the models of a benchmark, the most accurate first.",
     "coverage": "Print how much of what really happened lies within a model's error radii.",
     "doctor": "Say which versions, extras, models and cores are here; first thing to attach to a report.",
 }
@@ -47,15 +48,16 @@ def build() -> App:
         app.command(f"motioncast.cli.{name}:{name}", name=name, help=line)
     datasets = App(name="datasets", help="List the data sets and where to obtain them; check a copy.")
     datasets.command("motioncast.cli.datasets:check", name="check", help="Check a copy of a data set.")
+    datasets.command("motioncast.cli.datasets:convert", name="convert", help="Write its scenes as files of our own.")
     datasets.default(_list_datasets)  # a default command cannot be named by a string
     app.command(datasets)
     return app
 
 
-def _list_datasets() -> None:
+def _list_datasets(*, json: bool = False) -> None:
     from motioncast.cli.datasets import datasets
 
-    datasets()
+    datasets(json=json)
 
 
 def run(arguments: Sequence[str]) -> int:

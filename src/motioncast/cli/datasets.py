@@ -1,82 +1,118 @@
-"""``motioncast datasets``: the data sets, where to obtain them, and whether a copy is whole."""
+"""``motioncast datasets``: the data sets, where to obtain them, whether a copy is whole, and their scenes as files."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import re
+from dataclasses import asdict
 from pathlib import Path
 
 from motioncast.cli import say
 from motioncast.errors import InputError
 
 
-@dataclass(frozen=True)
-class DataSet:
-    """A data set that motioncast reads, and where it comes from."""
+def datasets(*, json: bool = False) -> None:
+    """List the data sets and where to obtain them.
 
-    name: str
-    what: str
-    licence: str
-    origin: str
+    Args:
+        json: Print one JSON object.
+    """
+    from motioncast.datasets.catalogue import catalogue
 
-
-DATASETS = (
-    DataSet(
-        "cmu",
-        "127 takes of 23 people, two of them dancing together; ASF/AMC",
-        "free to use, not to be resold; acknowledge CMU (see NOTICE)",
-        "mocap.cs.cmu.edu, .asf and .amc by subject",
-    ),
-    DataSet(
-        "extra",
-        "99 clips of one person and a ball, on another skeleton; CMU takes beside them are read with cmu",
-        "Apache-2.0 (BallPlay-M of SkillMimic)",
-        "github.com/wyhuai/SkillMimic, skillmimic/data/motions",
-    ),
-)
-
-
-def datasets() -> None:
-    """List the data sets and where to obtain them."""
-    for entry in DATASETS:
-        print(f"{entry.name}: {entry.what}\n  licence: {entry.licence}\n  from:    {entry.origin}")
+    found = catalogue().values()
+    if json:
+        keys = ("name", "what", "licence", "size", "origin", "files")
+        rows = [{key: getattr(entry, key) for key in keys} for entry in found]
+        say.emit({"schema": "motioncast.datasets/1", "datasets": rows})
+        return
+    for entry in found:
+        print(f"{entry.name}: {entry.what}\n  licence: {entry.licence}")
+        print(f"  size:    {entry.size}\n  from:    {entry.origin}")
     print("\ncheck a copy: motioncast datasets check cmu --data FOLDER")
 
 
-def check(name: str, /, *, data: Path) -> None:
-    """Check a copy of a data set: every take is read once.
+def check(name: str, /, *, data: Path, json: bool = False) -> None:
+    """Check a copy of a data set: what is there, what is missing, what is odd; every scene is read once.
 
     Args:
         name: Name of the data set.
         data: Folder that holds it.
+        json: Print one JSON object.
     """
-    if name == "cmu":
-        _check_cmu(data)
-    elif name == "extra":
-        _check_ball_players(data)
+    from motioncast.datasets.catalogue import data_set
+
+    entry = data_set(name)
+    with say.progress("reading every scene") as progress:
+        findings = entry.check(data, progress)
+    if json:
+        rows = [asdict(finding) for finding in findings]
+        say.emit({"schema": "motioncast.check/1", "dataset": name, "folder": str(data), "findings": rows})
     else:
-        known = ", ".join(entry.name for entry in DATASETS)
-        raise InputError(f'there is no data set "{name}"; choose one of {known}')
+        for finding in findings:
+            print(f"{finding.kind + ':':<9}{finding.what}")
+    missing = [finding.what for finding in findings if finding.kind == "missing"]
+    if missing:
+        raise InputError(f"{data} lacks {', '.join(missing)}; obtain {name} from {entry.origin}")
 
 
-def _check_cmu(data: Path) -> None:
-    from motioncast.datasets import cmu
+def convert(name: str, /, *, data: Path, out: Path, back: bool = False) -> None:
+    """Write each scene of a copy as a file of our own (npz), or such files as the data set's own (somof only).
 
-    takes = cmu.takes(data)
-    split = {take.name: take.split for take in takes}
-    counts = {name: [0, 0.0, 0] for name in ("train", "validation", "test")}
-    with say.progress("reading every take") as progress:
-        for number, scene in enumerate(cmu.read(takes), 1):
-            count = counts[split[scene.people[0]]]
-            count[0] += 1
-            count[1] += scene.duration_s / 60
-            count[2] += int((~scene.observed.any((1, 2))).sum())
-            progress(number / len(takes))
-    rows = [(name, takes, f"{minutes:.1f}", gaps) for name, (takes, minutes, gaps) in counts.items()]
-    say.table(("split", "takes", "minutes", "frames masked as jumps"), rows)
+    Args:
+        name: Name of the data set.
+        data: Folder that holds it; with --back, folder of our files.
+        out: Folder for the files; it is made.
+        back: Write the data set's own files from ours.
+    """
+    from motioncast.cli.writing import make_folder
+    from motioncast.datasets.catalogue import data_set
+
+    entry = data_set(name)
+    if back and name != "somof":
+        raise InputError(f"{name} cannot be written, only read; --back is there for somof")
+    if back:
+        files = _written_back(data, out)
+    else:
+        make_folder(out)
+        from motioncast.formats.load import save_scene
+
+        files, taken = [], set[str]()
+        for scene in entry.scenes(data):
+            file = _file_name(scene.source, taken)
+            taken.add(file.lower())
+            files += save_scene(scene, out / file)
+    print(f"{len(files):,} files in {out}")
 
 
-def _check_ball_players(data: Path) -> None:
-    from motioncast.datasets import ballplay
+def _written_back(data: Path, out: Path) -> list[Path]:
+    """SoMoF's files of every split that a folder of our files holds."""
+    from motioncast.cli.writing import make_folder
+    from motioncast.datasets import somof
+    from motioncast.datasets.catalogue import below
+    from motioncast.formats.load import load_scene
 
-    clips = list(ballplay.read(data))
-    print(f"{len(clips)} clips, {sum(clip.duration_s for clip in clips) / 60:.1f} minutes")
+    windows = [load_scene(path) for path in below(data, "*.npz")]
+    if not windows:
+        raise InputError(f"{data} holds no npz files; give a folder that --out of this command wrote")
+    make_folder(out)
+    files: list[Path] = []
+    for split in somof.SPLITS:
+        own = [window for window in windows if window.source.startswith(f"SoMoF {split} ")]
+        files += somof.write(own, out, split) if own else ()
+    if not files:
+        raise InputError(f"no file in {data} comes from SoMoF; give a folder that --out of this command wrote")
+    return files
+
+
+def _file_name(source: str, taken: set[str]) -> str:
+    """A name for the file of a scene, that no other has.
+
+    Example:
+        >>> _file_name("AMASS CMU/01 01_01", set()), _file_name("a b", {"a_b.npz"})
+        ('AMASS_CMU_01_01_01.npz', 'a_b_2.npz')
+    """
+    stem = re.sub(r"[^\w.-]+", "_", source).strip("_.")[:150] or "scene"
+    name, number = f"{stem}.npz", 1
+    while name.lower() in taken:
+        number += 1
+        name = f"{stem}_{number}.npz"
+    return name

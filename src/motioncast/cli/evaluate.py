@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import subprocess
-from dataclasses import asdict
 from pathlib import Path
 from typing import Literal
 
 from motioncast.cli import say
+from motioncast.errors import InputError
 
 
 def evaluate(
@@ -18,6 +17,9 @@ def evaluate(
     data: Path,
     split: Literal["test", "validation"] = "test",
     alone: bool = False,
+    workers: int = 1,
+    ray: str | None = None,
+    out: Path | None = None,
     json: bool = False,
 ) -> None:
     """Measure a model by a benchmark.
@@ -28,19 +30,30 @@ def evaluate(
         data: Folder that holds the data sets.
         split: The validation split serves while something is still being chosen.
         alone: Forecast each person with the others hidden: what do they tell the model?
+        workers: Processes of this machine that share the windows.
+        ray: Address of a Ray cluster that shares the windows, or "local".
+        out: Folder to write the result to, for "leaderboard --results".
         json: Print the result as one JSON object.
     """
+    from motioncast.benchmarks.result import save_result, to_json
     from motioncast.benchmarks.run import evaluate as measure
+    from motioncast.benchmarks.spread import over_processes, over_ray, serially
 
+    if workers < 1:
+        raise InputError(f"--workers {workers} came; give 1 or more")
+    spread = over_ray(ray) if ray else over_processes(workers) if workers > 1 else serially
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
     with say.progress(f"{model} on {benchmark}") as progress:
-        result = measure(model, benchmark, data, split=split, alone=alone, progress=progress)
+        result = measure(model, benchmark, data, split=split, alone=alone, spread=spread, progress=progress)
+    if out is not None:
+        say.note([f"written: {save_result(result, out)}"])
     if json:
-        answer = {name: value for name, value in asdict(result).items() if name not in ("windows", "takes")}
-        say.emit({**answer, "commit": commit()})
+        say.emit(to_json(result))
         return
     print(f"{result.model} on {result.benchmark}\n")
     say.table(
-        ("metric", "after", "value", "95 % of takes"),
+        ("metric", "after", "value", "95 %"),
         [
             (
                 row.metric,
@@ -51,16 +64,7 @@ def evaluate(
             for row in result.rows
         ],
     )
-    print(f"\n{result.windows} windows of {result.takes} takes: {result.data}; protocol {result.protocol}")
-
-
-def commit() -> str:
-    """Commit of the checkout that this package is run from, or its version."""
-    root = Path(__file__).parents[3]
-    if (root / ".git").exists():
-        done = subprocess.run(["git", "-C", str(root), "rev-parse", "HEAD"], capture_output=True, text=True)
-        if done.returncode == 0:
-            return done.stdout.strip()
-    from motioncast import __version__
-
-    return __version__
+    print(
+        f"\n{result.windows} windows of {result.takes} takes: {result.setting['windows']} ({split}); "
+        f"intervals over {result.independent}; protocol {result.protocol}"
+    )

@@ -39,6 +39,7 @@ class ModelCard:
         exceptions: Contract checks that the published design cannot hold: name -> reason.
         tolerance_m: How exactly the model holds its invariances.
         recipe: Name of the recipe that trained it.
+        training: What that cost: ``scenes`` seen, ``minutes`` and ``device``.
         checksum: SHA-256 of the weights.
     """
 
@@ -61,6 +62,7 @@ class ModelCard:
     exceptions: Mapping[str, str] = field(default_factory=dict)
     tolerance_m: float = 1e-4
     recipe: str = ""
+    training: Mapping[str, Any] = field(default_factory=dict)
     checksum: str = ""
 
     @property

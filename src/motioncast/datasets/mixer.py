@@ -9,6 +9,7 @@ no position of a scene is computed from what comes later.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -25,9 +26,33 @@ def turned(positions: np.ndarray, angle: float) -> np.ndarray:
     return positions @ matrix.T
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Arrangement:
+    """Groups of people in one world.
+
+    Attributes:
+        positions: ``(time, all people, joints, 3)`` float32.
+        places: For each group where its middle stands in the last frame of the history (m), and how far it was
+            turned about the vertical (radians): ``(x, y, angle)``.
+    """
+
+    positions: np.ndarray
+    places: tuple[tuple[float, float, float], ...]
+
+
+def entries(shape: tuple[int, int], history: int, share: float, random: np.random.Generator) -> np.ndarray:
+    """First frame in which each person is seen, ``(scenes, people)``: a share enters in the first half of the history.
+
+    Example:
+        >>> entries((1, 4), 15, 0.0, np.random.default_rng(0)).tolist()
+        [[0, 0, 0, 0]]
+    """
+    return random.integers(1, history // 2 + 1, shape) * (random.random(shape) < share)
+
+
 def arrange(
     groups: Sequence[np.ndarray], now: int, random: np.random.Generator, radius_m: float = 2.5, pelvis: int = 0
-) -> np.ndarray | None:
+) -> Arrangement | None:
     """Groups of people set down in one world.
 
     The circle grows with the number of people beyond three.
@@ -40,29 +65,32 @@ def arrange(
         pelvis: Index of the joint that stands for a person.
 
     Returns:
-        ``(time, all people, joints, 3)`` float32, or None if no arrangement was found.
+        The arrangement, or None if none was found.
 
     Example:
         >>> one = np.zeros((20, 1, 15, 3), np.float32)
-        >>> scene = arrange([one, one], 9, np.random.default_rng(0))
+        >>> scene = arrange([one, one], 9, np.random.default_rng(0)).positions
         >>> scene.shape, bool(np.linalg.norm(scene[0, 0, 0] - scene[0, 1, 0]) >= PERSONAL_SPACE_M)
         ((20, 2, 15, 3), True)
     """
     # a crowd gets the room that it needs
     radius_m *= np.sqrt(max(1.0, sum(group.shape[1] for group in groups) / 3))
     placed: list[np.ndarray] = []
+    places: list[tuple[float, float, float]] = []
     for group in groups:
         middle = group[now, :, pelvis].mean(0) * np.array([1, 1, 0], np.float32)
         for _ in range(TRIES):
             distance, bearing = radius_m * np.sqrt(random.uniform()), random.uniform(0, 2 * np.pi)
             place = distance * np.array([np.cos(bearing), np.sin(bearing), 0], np.float32)
-            there = turned(group - middle, random.uniform(0, 2 * np.pi)) + place.astype(np.float32)
+            angle = random.uniform(0, 2 * np.pi)
+            there = turned(group - middle, angle) + place.astype(np.float32)
             if _apart([*placed, there], pelvis):
                 placed.append(there)
+                places.append((float(place[0]), float(place[1]), angle))
                 break
         else:
             return None
-    return np.concatenate(placed, 1)
+    return Arrangement(np.concatenate(placed, 1), tuple(places))
 
 
 def _apart(groups: Sequence[np.ndarray], pelvis: int) -> bool:

@@ -10,6 +10,8 @@ Joints as tokens, the padded trajectory, the residual in DCT space and one pass 
   motion in the frame of the one who looks. Distance and bearing are in it, so no grid is needed; there is no
   person embedding, so re-ordering people re-orders the answer; there are no slots, so absent people change
   nothing.
+- A trained model answers with the mean of the scene's future and of its mirror image's, mirrored back: left and
+  right are alike to it, exactly, and what it made up about one of them is halved.
 
 Shapes: B scenes, H frames of history, F frames of horizon, P people, J joints, d channels.
 """
@@ -24,6 +26,7 @@ from torch import Tensor, nn
 from motioncast.core.skeletons import SKELETONS
 from motioncast.nn.attention import EncoderLayer
 from motioncast.nn.dct import dct_matrix, exact
+from motioncast.nn.frames import root_joints, stand, to_own, to_world, turn
 from motioncast.nn.gaps import fill_gaps
 from motioncast.nn.losses import LIMBS, mean_distance, with_true_lengths
 
@@ -51,6 +54,7 @@ class SoMoFormerFastConfig:
         dropout: Share of dropped channels in training.
         path_share: How much of the path that it foresees the trained model believes; the rest stands still.
         seam_share: How much of the last step's motion the first step of the answer must keep.
+        mirrored: Whether a trained model also looks at the mirror image.
     """
 
     skeleton: str = "mrt15"
@@ -65,6 +69,7 @@ class SoMoFormerFastConfig:
     dropout: float = 0.1
     path_share: float = 1.0
     seam_share: float = 0.0
+    mirrored: bool = False
 
 
 class SoMoFormerFast(nn.Module):
@@ -76,14 +81,11 @@ class SoMoFormerFast(nn.Module):
         super().__init__()
         self.config = config
         skeleton = SKELETONS[config.skeleton]
+        self.skeleton = skeleton
         self.joints = len(skeleton)
-        self.sides = [
-            (skeleton.names.index(f"left_{place}"), skeleton.names.index(f"right_{place}"))
-            for place in ("hip", "shoulder")
-        ]
         self.limbs = [(joint, parent) for joint, parent in skeleton.bones if skeleton.names[joint].endswith(LIMBS)]
-        pelvis = skeleton.find("pelvis")
-        self.root = [pelvis] if pelvis is not None else list(self.sides[0])
+        self.root = root_joints(skeleton)
+        self.order = list(skeleton.mirror())
         h, d = config.history, config.width
         self.embed = nn.Linear(3 + 3 * h + 3 * (h - 1) + h, d)
         self.joint = nn.Parameter(torch.randn(self.joints, d) * 0.02)
@@ -108,15 +110,28 @@ class SoMoFormerFast(nn.Module):
             history: ``(B, H, P, J, 3)`` metres, world, z up.
             observed: ``(B, H, P, J)`` bool.
             weights: If given, each layer's attention ``(B * P, heads, J + P, J + P)`` is appended to it; the last
-                layer's has the rows of the joints only.
+                layer's has the rows of the joints only. With ``mirrored``, B counts scenes and images.
 
         Returns:
             ``(B, F, P, J, 3)`` metres, world.
         """
-        batch, _, people = history.shape[:3]
         history = fill_gaps(history, observed)
-        origin, heading = self.stand(history[:, -1])
-        own = turn(history - origin[:, None, :, None], heading[:, None, :, None], back=True)
+        if self.training or not self.config.mirrored:
+            return self.future(history, observed, weights)
+        both = torch.cat([history, self.mirror(history)]), torch.cat([observed, observed[..., self.order]])
+        future, image = self.future(*both, weights).chunk(2)
+        return (future + self.mirror(image)) / 2
+
+    def mirror(self, motion: Tensor) -> Tensor:
+        """Motion ``(..., J, 3)`` as a mirror shows it: x turned over, left and right joints exchanged."""
+        x, y, z = motion[..., self.order, :].unbind(-1)
+        return torch.stack([-x, y, z], -1)
+
+    def future(self, history: Tensor, observed: Tensor, weights: list[Tensor] | None = None) -> Tensor:
+        """The future of all people from a history without gaps; shapes as in :meth:`forward`."""
+        batch, _, people = history.shape[:3]
+        origin, heading = stand(history[:, -1], self.skeleton)
+        own = to_own(history, origin, heading)
         tokens = self.own_tokens(own, observed)
         others = self.others_as_seen(history, origin, heading)
         tokens = torch.cat([tokens, others], 2).flatten(0, 1)
@@ -131,7 +146,7 @@ class SoMoFormerFast(nn.Module):
         if not self.training:
             change = self.tempered(change, own[:, -1:] - own[:, -2:-1])
         future = own[:, -1:] + change
-        return turn(future, heading[:, None, :, None]) + origin[:, None, :, None]
+        return to_world(future, origin, heading)
 
     def tempered(self, change: Tensor, step: Tensor) -> Tensor:
         """The change of a trained model, less sure of itself where validation takes say so.
@@ -152,16 +167,6 @@ class SoMoFormerFast(nn.Module):
         """Mean distance of the joints, the error that is reported, with bones as they came and with true ones."""
         rigid = with_true_lengths(answer, truth, self.limbs)
         return 0.5 * (mean_distance(answer, truth, observed) + mean_distance(rigid, truth, observed))
-
-    def stand(self, pose: Tensor) -> tuple[Tensor, Tensor]:
-        """Where each person stands, ``(B, P, 3)``, and its heading as a horizontal unit vector, ``(B, P, 2)``."""
-        origin = pose[:, :, self.root].mean(2)
-        across = sum(pose[:, :, left] - pose[:, :, right] for left, right in self.sides)
-        assert isinstance(across, Tensor)  # there are sides: the sum is not its start, 0
-        forward = torch.stack([across[..., 1], -across[..., 0]], -1)
-        length = forward.norm(dim=-1, keepdim=True)
-        ahead = torch.cat([torch.ones_like(length), torch.zeros_like(length)], -1)
-        return origin, torch.where(length > 1e-3, forward / length.clamp(min=1e-3), ahead)
 
     def own_tokens(self, own: Tensor, observed: Tensor) -> Tensor:
         """A token a joint from its trajectory in the person's frame, ``(B, P, J, d)``."""
@@ -188,13 +193,6 @@ class SoMoFormerFast(nn.Module):
         hidden = absent[:, None, :] | itself
         joints = torch.zeros(batch, people, self.joints, dtype=torch.bool, device=observed.device)
         return torch.cat([joints, hidden], 2).float().flatten(0, 1)[:, None, None] * FAR
-
-
-def turn(vectors: Tensor, heading: Tensor, *, back: bool = False) -> Tensor:
-    """Vectors ``(..., 3)`` turned about the vertical so that +x comes to point along ``heading`` (or back)."""
-    cosine, sine = heading[..., 0], -heading[..., 1] if back else heading[..., 1]
-    x, y, z = vectors.unbind(-1)
-    return torch.stack([cosine * x - sine * y, sine * x + cosine * y, z], -1)
 
 
 MODEL, CONFIG = SoMoFormerFast, SoMoFormerFastConfig

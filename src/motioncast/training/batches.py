@@ -9,7 +9,7 @@ import numpy as np
 
 from motioncast.core.scene import Scene
 from motioncast.core.skeletons import SKELETONS
-from motioncast.datasets.mixer import arrange, turned
+from motioncast.datasets.mixer import arrange, entries, turned
 from motioncast.training.recipe import Recipe
 
 STORED_FPS = 60.0
@@ -77,9 +77,10 @@ class Sampler:
             if len(drawn) == 1:
                 positions = drawn[0][0]
             else:
-                positions = arrange([group for group, _ in drawn], self.history - 1, random)
-            if positions is None:
-                continue
+                arrangement = arrange([group for group, _ in drawn], self.history - 1, random)
+                if arrangement is None:
+                    continue
+                positions = arrangement.positions
             observed = np.concatenate([mask for _, mask in drawn], 1)
             if recipe.yaw:
                 positions = turned(positions, random.uniform(0, 2 * np.pi))
@@ -115,7 +116,7 @@ class Sampler:
         observed = observed.copy()
         observed[:, :h] &= random.random(observed[:, :h].shape) >= recipe.drop
         people = (len(positions), positions.shape[2])
-        entry = random.integers(1, h // 2 + 1, people) * (random.random(people) < recipe.late)
+        entry = entries(people, h, recipe.late, random)
         observed[:, :h] &= np.arange(h)[:, None, None] >= entry[:, None, :, None]
         absent = random.random(people) < recipe.hide
         absent[:, 0] = False

@@ -11,7 +11,7 @@ import copy
 import json
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Literal
@@ -58,7 +58,7 @@ def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = pr
     skeleton = SKELETONS[config.skeleton]
 
     sampler = Sampler(*training_takes(recipe, data, skeleton), recipe, config.history, config.horizon, config.fps)
-    checks = validation(data, skeleton, config.history, config.horizon, config.fps)
+    checks = validation(data, skeleton, config.history, config.horizon, config.fps, recipe.people)
     if hasattr(raw, "fit_statistics"):
         raw.fit_statistics(torch.from_numpy(_whole_windows(sampler, recipe, config.history)))
     if recipe.start:
@@ -100,7 +100,10 @@ def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = pr
             score = float(np.mean(list(scores.values())))
             total = spent + time.perf_counter() - began
             loss_now = float(np.mean(losses))
-            entry = {"step": step, "loss": loss_now, "validation": scores, "score": score, "seconds": total}
+            entry = {
+                "step": step, "loss": loss_now, "validation": scores, "score": score, "seconds": total,
+                "device": _device(fabric),
+            }  # fmt: skip
             losses = []
             if fabric.is_global_zero:
                 with (out / "metrics.jsonl").open("a", encoding="utf-8") as log:
@@ -131,6 +134,11 @@ def _same_recipe(recipe: Recipe, out: Path) -> None:
     began = read_run(out)
     if replace(began, steps=recipe.steps) != recipe:
         raise InputError(f"{out} was begun with another recipe; give another folder, or the recipe in its recipe.json")
+
+
+def _device(fabric: Fabric) -> str:
+    """The hardware of a run, in words."""
+    return torch.cuda.get_device_name() if fabric.device.type == "cuda" else f"{torch.get_num_threads()} CPU threads"
 
 
 def _precision() -> Literal["bf16-mixed", "32-true"]:
@@ -174,9 +182,16 @@ def training_takes(recipe: Recipe, data: Path, skeleton: Skeleton) -> tuple[list
     )
 
 
-def validation(data: Path, skeleton: Skeleton, history: int, horizon: int, fps: float) -> dict[str, Windows]:
-    """The windows on which a model is chosen: the couple, and composed scenes of three."""
+def validation(
+    data: Path, skeleton: Skeleton, history: int, horizon: int, fps: float, people: Sequence[int] = (2, 3)
+) -> dict[str, Windows]:
+    """The windows on which a model is chosen: the couple and composed scenes of three, or single people.
+
+    A model of single people is chosen on single people; its takes start so that "now" is a captured frame.
+    """
     singles = open_cmu.single_scenes(data, "validation", fps, skeleton)
+    if max(people) == 1:
+        return {"single": cut(singles, history, horizon, first=(1 - history) % 5)}
     couples = open_cmu.couple_scenes(data, "validation", fps, skeleton)
     return {
         "couple": cut(couples, history, horizon),

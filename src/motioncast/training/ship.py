@@ -11,7 +11,7 @@ import numpy as np
 
 from motioncast.benchmarks import open_cmu
 from motioncast.benchmarks.calibration import errors_by_take, radii
-from motioncast.benchmarks.protocols import Protocol
+from motioncast.benchmarks.protocol import Protocol
 from motioncast.core.card import ModelCard
 from motioncast.core.forecaster import Forecaster
 from motioncast.datasets.windows import cut
@@ -44,7 +44,6 @@ def ship(run: Path, folder: Path | None = None, radius: Mapping[str, Any] | None
     best = min(map(json.loads, lines), key=lambda entry: entry["score"])
     card = ModelCard(
         name=recipe.name,
-        system="SoMoFormer",
         task="forecast",
         skeleton=config.skeleton,
         history=config.history,
@@ -58,7 +57,13 @@ def ship(run: Path, folder: Path | None = None, radius: Mapping[str, Any] | None
         },
         radius=radius or {},
         recipe=recipe.name,
-        **recipe.card,
+        training={
+            "scenes": best["step"] * recipe.batch,
+            "minutes": round(best["seconds"] / 60, 1),
+            "device": best.get("device", "cpu"),
+            "seed": recipe.seed,
+        },
+        **{"system": recipe.model, **recipe.card},
     )
     return export(model, card, folder or run)
 

@@ -1,0 +1,62 @@
+"""A person's own frame: where it stands and which way it faces.
+
+A model that sees people in their own frames does not have to learn that moving or turning a scene moves and turns
+the answer: it holds exactly.
+"""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor
+
+from motioncast.core.skeleton import Skeleton
+
+
+def side_joints(skeleton: Skeleton) -> list[tuple[int, int]]:
+    """Pairs (left, right) of the hips and of the shoulders."""
+    return [
+        (skeleton.names.index(f"left_{place}"), skeleton.names.index(f"right_{place}")) for place in ("hip", "shoulder")
+    ]
+
+
+def root_joints(skeleton: Skeleton) -> list[int]:
+    """The joints whose mean is where a person stands: the pelvis, or both hips where there is none."""
+    pelvis = skeleton.find("pelvis")
+    return [pelvis] if pelvis is not None else list(side_joints(skeleton)[0])
+
+
+def stand(pose: Tensor, skeleton: Skeleton) -> tuple[Tensor, Tensor]:
+    """Where each person stands, and its heading.
+
+    Args:
+        pose: ``(B, P, J, 3)`` metres, z up: one frame.
+        skeleton: Which joint is which.
+
+    Returns:
+        The root's position ``(B, P, 3)`` and a horizontal unit vector ``(B, P, 2)``, at right angles to hips and
+        shoulders.
+    """
+    origin = pose[:, :, root_joints(skeleton)].mean(2)
+    across = sum(pose[:, :, left] - pose[:, :, right] for left, right in side_joints(skeleton))
+    assert isinstance(across, Tensor)  # there are sides: the sum is not its start, 0
+    forward = torch.stack([across[..., 1], -across[..., 0]], -1)
+    length = forward.norm(dim=-1, keepdim=True)
+    ahead = torch.cat([torch.ones_like(length), torch.zeros_like(length)], -1)
+    return origin, torch.where(length > 1e-3, forward / length.clamp(min=1e-3), ahead)
+
+
+def turn(vectors: Tensor, heading: Tensor, *, back: bool = False) -> Tensor:
+    """Vectors ``(..., 3)`` turned about the vertical so that +x comes to point along ``heading`` (or back)."""
+    cosine, sine = heading[..., 0], -heading[..., 1] if back else heading[..., 1]
+    x, y, z = vectors.unbind(-1)
+    return torch.stack([cosine * x - sine * y, sine * x + cosine * y, z], -1)
+
+
+def to_own(motion: Tensor, origin: Tensor, heading: Tensor) -> Tensor:
+    """Each person's motion ``(B, T, P, J, 3)`` as seen from where it stands."""
+    return turn(motion - origin[:, None, :, None], heading[:, None, :, None], back=True)
+
+
+def to_world(own: Tensor, origin: Tensor, heading: Tensor) -> Tensor:
+    """The inverse of ``to_own``."""
+    return turn(own, heading[:, None, :, None]) + origin[:, None, :, None]

@@ -11,6 +11,7 @@ from motioncast.core.skeleton import Skeleton
 from motioncast.datasets import cmu
 from motioncast.datasets.mixer import arrange
 from motioncast.datasets.windows import COMPOSED, Windows, cut, sampled
+from motioncast.errors import InputError
 
 CROWD_SCENES = 400
 CROWD_SEED = 2026
@@ -46,10 +47,16 @@ def crowd(singles: list[Scene], couples: list[Scene], history: int, horizon: int
     """Scenes of three people, seeded: in every second one two of them are the couple.
 
     A take is drawn by its number of windows, once a scene; windows without a gap only.
+
+    Raises:
+        InputError: If there are fewer than three takes of single people.
     """
     random = np.random.default_rng(CROWD_SEED)
     alone, together = cut(singles, history, horizon, 1), cut(couples, history, horizon, 1)
     whole = [np.flatnonzero(windows.observed.all((1, 2, 3))) for windows in (alone, together)]
+    found = len({alone.takes[index] for index in whole[0]})
+    if found < 3:
+        raise InputError(f"{found} takes of single people have a window without a gap; scenes of three need three")
     positions, takes, starts, places = [], [], [], []
     while len(positions) < CROWD_SCENES:
         with_couple = len(positions) % 2 == 0

@@ -11,7 +11,7 @@ from motioncast.benchmarks.manifest import manifest
 from motioncast.benchmarks.protocol import Protocol
 from motioncast.benchmarks.protocols import BENCHMARKS, windows_of
 from motioncast.benchmarks.run import evaluate, forecast_windows
-from motioncast.benchmarks.scoring import draws, score, units_of
+from motioncast.benchmarks.scoring import independent, score, sources_of
 from motioncast.core.skeletons import MRT15
 from motioncast.datasets.windows import Windows, cut
 from motioncast.errors import InputError
@@ -51,25 +51,16 @@ def test_few_takes_are_drawn_by_blocks_of_eight_seconds() -> None:
     windows = toy_windows()
     starts = tuple((60 * index,) for index in range(9))  # every 4 s
     few = Windows(windows.positions[:9], windows.observed[:9], ("a",) * 5 + ("b",) * 4, starts, 15)
-    units = units_of(TOY, few)
-    assert units.what == "6 blocks of 8 s of 2 takes"
-    assert units.members.sum(0).tolist() == [1] * 9
-    assert units.members.sum(1).tolist() == [2, 2, 1, 1, 2, 1]
+    assert independent(TOY, few) == "6 blocks of 8 s of 2 takes"
 
 
-def test_a_composed_scene_counts_with_all_of_its_takes() -> None:
+def test_a_composed_scene_comes_from_all_of_its_takes() -> None:
     windows = toy_windows()
     takes = tuple(f"take {index % 11} + take {(index + 1) % 11}" for index in range(11))
-    starts = tuple((0, 0) for _ in takes)
-    units = units_of(TOY, Windows(windows.positions[:11], windows.observed[:11], takes, starts, 15))
-    assert units.what == "11 takes"
-    weights = draws(units)
-    counts = np.random.default_rng(0).multinomial(11, np.full(11, 1 / 11), len(weights))
-    order = sorted({f"take {number}" for number in range(11)})
-    first, second = (counts[:, order.index(f"take {number}")] for number in (3, 4))
-    drawn = weights.min(1) < 1  # all but the odd draw of no window at all
-    assert drawn.mean() > 0.99
-    np.testing.assert_array_equal(weights[drawn, 3], (first * second)[drawn])
+    starts = tuple((15, 30) for _ in takes)
+    composed = Windows(windows.positions[:11], windows.observed[:11], takes, starts, 15)
+    assert independent(TOY, composed) == "11 takes"
+    assert sources_of(TOY, composed)[3] == [("take 3", 1.0), ("take 4", 2.0)]
 
 
 def test_order_of_windows_and_people_changes_no_figure() -> None:

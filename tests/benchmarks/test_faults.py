@@ -17,7 +17,7 @@ from motioncast.benchmarks.protocol import Protocol
 from motioncast.benchmarks.protocols import BENCHMARKS
 from motioncast.benchmarks.result import Result, Row, comparable
 from motioncast.benchmarks.run import forecast_windows
-from motioncast.benchmarks.scoring import figures_of, score, units_of
+from motioncast.benchmarks.scoring import figures_of, independent, score
 from motioncast.core.forecast import Forecast
 from motioncast.core.scene import Scene
 from motioncast.core.skeletons import MRT15, SKELETONS, SMPL24, SOMOF13
@@ -28,6 +28,7 @@ from motioncast.datasets.windows import Windows, cut
 from motioncast.errors import InputError, MotioncastError
 from motioncast.inference.registry import list_models, load
 from motioncast.inference.session import GraphForecaster
+from motioncast.metrics.samples import best_of
 from motioncast.testing import walkers
 
 DUET = BENCHMARKS["cmu-duet"][0]
@@ -162,6 +163,19 @@ def test_fault_14_frames_and_people_are_mixed(protocol: Protocol) -> None:
     answers = guessed(windows)
     swapped = with_positions(windows, windows.positions[:, :, ::-1])
     assert figures(protocol, windows, answers) == pytest.approx(figures(protocol, swapped, answers[:, :, ::-1]))
+
+
+def test_fault_15_the_best_of_k_for_each_joint() -> None:
+    random = np.random.default_rng(0)
+    truth = np.zeros((20, 6, 2, 15, 3), np.float32)
+    samples = random.normal(0, 0.3, (20, 6, *truth.shape[1:])).astype(
+        np.float32
+    )  # (windows, K, time, people, joints, 3)
+    each = np.linalg.norm(samples - truth[:, None], axis=-1).mean(2)  # (windows, K, people, joints)
+    found = best_of("mpjpe_m", each.mean(-1), 6, "scene") | best_of("mpjpe_m", each.mean(-1), 6, "person")
+    assert set(found) == {"mpjpe_m_k1", "mpjpe_m_best_of_6_per_scene", "mpjpe_m_best_of_6_per_person"}
+    chimera = each.min(1).mean()  # a sample for each joint: better than any that exists
+    assert chimera < found["mpjpe_m_best_of_6_per_person"] <= found["mpjpe_m_best_of_6_per_scene"] < found["mpjpe_m_k1"]
 
 
 def test_fault_16_the_truth_chooses_among_samples() -> None:
@@ -335,7 +349,7 @@ def test_fault_32_overlapping_windows_as_independent_ones() -> None:
         tuple(start for start in windows.starts for _ in range(10)), 15,
     )  # fmt: skip
     np.testing.assert_allclose(_interval(many, guessed), interval, rtol=1e-5)  # ten times as many tell no more
-    assert units_of(DUET, many).what == "12 takes"
+    assert independent(DUET, many) == "12 takes"
 
 
 def _interval(windows: Windows, forecaster: Callable[[Windows], np.ndarray]) -> list[float | None]:

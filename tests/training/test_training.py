@@ -150,3 +150,14 @@ def test_recipes_are_checked(tmp_path: Path) -> None:
     odd.write_text('name = "a"\nmodel = "b"\nsteeps = 3\n', encoding="utf-8")
     with pytest.raises(InputError, match="steeps"):
         read_recipe(odd)
+
+
+def test_the_mean_of_the_weights_follows_and_takes_statistics_as_they_are() -> None:
+    from motioncast.training.loop import follow
+
+    model, mean = torch.nn.BatchNorm1d(2), torch.nn.BatchNorm1d(2)
+    torch.nn.init.constant_(model.weight, 3.0)
+    model(torch.randn(8, 2) + 5)
+    follow(mean, model, 0.75)
+    torch.testing.assert_close(mean.weight, torch.full((2,), 1.5))
+    torch.testing.assert_close(mean.running_mean, model.running_mean)

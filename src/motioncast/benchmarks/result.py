@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from importlib import resources
@@ -90,9 +91,10 @@ def to_json(result: Result) -> dict[str, Any]:
 
 
 def save_result(result: Result, folder: Path) -> Path:
-    """Write a result as ``BENCHMARK.MODEL.json``."""
-    name = "".join(letter if letter.isalnum() or letter in "-_" else "-" for letter in result.model)
-    path = folder / f"{result.benchmark}.{name}.json"
+    """Write a result as ``BENCHMARK.MODEL.json``, of a further seed as ``BENCHMARK.MODEL.seedN.json``."""
+    name = re.sub(r"[^\w-]+", "-", result.model).strip("-")
+    seed = result.training.get("seed", 0)
+    path = folder / f"{result.benchmark}.{name}{f'.seed{seed}' if seed else ''}.json"
     with atomic_write(path) as temporary:
         temporary.write_text(json.dumps(to_json(result), indent=1) + "\n", encoding="utf-8")
     return path
@@ -118,20 +120,6 @@ def load_result(path: Path) -> Result:
 def shipped_results() -> Path:
     """The folder of the results that come with the package."""
     return Path(str(resources.files("motioncast.benchmarks"))) / "results"
-
-
-def results_of(benchmark: str, folder: Path) -> list[Result]:
-    """All results of a benchmark in a folder, the most accurate first.
-
-    Raises:
-        InputError: If there are none, or if they do not compare: their protocols differ.
-    """
-    found = [load_result(path) for path in sorted(folder.glob(f"{benchmark}.*.json"))]
-    if not found:
-        raise InputError(
-            f"{folder} holds no result of {benchmark}; motioncast evaluate MODEL {benchmark} --out writes one"
-        )
-    return comparable(found)
 
 
 def comparable(results: list[Result]) -> list[Result]:

@@ -13,7 +13,7 @@ import motioncast
 from motioncast.benchmarks.protocol import Protocol, checksum
 from motioncast.benchmarks.protocols import windows_of
 from motioncast.benchmarks.result import Result
-from motioncast.benchmarks.scoring import score, units_of
+from motioncast.benchmarks.scoring import independent, score
 from motioncast.benchmarks.spread import Spread, serially
 from motioncast.core.forecaster import Forecaster
 from motioncast.core.scene import Scene
@@ -65,7 +65,7 @@ def evaluate(
         setting={**asdict(protocol), "moments_ms": protocol.moments_ms, "split": split},
         windows=len(windows),
         takes=len({take for names in windows.takes for take in names.split(COMPOSED)}),
-        independent=units_of(protocol, windows).what,
+        independent=independent(protocol, windows),
         weights=card.checksum,
         parameters=card.parameters,
         training=card.training,

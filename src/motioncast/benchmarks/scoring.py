@@ -10,13 +10,9 @@ from motioncast.benchmarks.protocol import Protocol
 from motioncast.benchmarks.result import Row
 from motioncast.core.skeletons import SKELETONS
 from motioncast.datasets.windows import COMPOSED, Windows
+from motioncast.metrics.alignment import root_joints
+from motioncast.metrics.bootstrap import count, draws, units
 from motioncast.metrics.position import joint_errors
-
-RESAMPLES = 1000
-FEWEST_TAKES = 10
-"""With fewer takes, blocks of takes are drawn instead."""
-
-BLOCK_S = 8.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,7 +57,9 @@ def score(protocol: Protocol, windows: Windows, forecasts: np.ndarray) -> list[R
         if figure.metric == f"{protocol.metric}_at" and figure.frame in protocol.summary
     ]  # fmt: skip
     # one row for the figures as they are, the others for what might have been captured instead
-    weights = np.concatenate([np.ones((1, len(windows))), draws(units_of(protocol, windows))])
+    _, owners = units(sources_of(protocol, windows))
+    drawn = draws(owners)
+    weights = np.concatenate([np.ones((1, len(windows))), drawn[drawn.any(1)]])
     table = [(figure.metric, figure.frame, figure.unit, figure.mean(weights)) for figure in figures]
     means = [np.mean([group[index].mean(weights) for index in summary], 0) for group in (figures, references)]
     ratio = means[0] / means[1]
@@ -83,8 +81,7 @@ def figures_of(protocol: Protocol, forecast: np.ndarray, truth: np.ndarray, obse
     errors = joint_errors(forecast, truth)
     if protocol.metric == "vim":
         return [_vim(errors, observed, moment) for moment in protocol.moments]
-    pelvis = skeleton.find("pelvis")
-    root = [pelvis] if pelvis is not None else [skeleton.names.index(f"{side}_hip") for side in ("left", "right")]
+    root = list(root_joints(skeleton))
     paths = [positions[:, :, :, root].mean(3) for positions in (forecast, truth)]
     path_seen = observed[..., root].all(-1)
     aligned = joint_errors(forecast - paths[0][..., None, :], truth - paths[1][..., None, :])
@@ -114,54 +111,15 @@ def _vim(errors: np.ndarray, observed: np.ndarray, frame: int) -> Figure:
     return Figure("vim_at", frame, "cm", 100 * np.where(whole, norms, 0).sum(1), whole.sum(1))
 
 
-@dataclass(frozen=True, slots=True)
-class Units:
-    """What windows are drawn by: the takes, or blocks of them.
-
-    Attributes:
-        what: In words, with their number.
-        members: ``(units, windows)`` bool: the units that a window comes from.
-    """
-
-    what: str
-    members: np.ndarray
-
-
-def units_of(protocol: Protocol, windows: Windows) -> Units:
-    """The independent units of windows: takes, or blocks of 8 s of takes where there are fewer than ten.
-
-    A composed scene comes from several.
-    """
-    sources = [
-        list(zip(take.split(COMPOSED), starts, strict=True))
-        for take, starts in zip(windows.takes, windows.starts, strict=True)
+def sources_of(protocol: Protocol, windows: Windows) -> list[list[tuple[str, float]]]:
+    """The takes that each window comes from, and the second of each at which it starts."""
+    return [
+        [(take, start / protocol.fps) for take, start in zip(names.split(COMPOSED), starts, strict=True)]
+        for names, starts in zip(windows.takes, windows.starts, strict=True)
     ]
-    block = round(BLOCK_S * protocol.fps)
-    by_take = [[take for take, _ in source] for source in sources]
-    takes = sorted({take for names in by_take for take in names})
-    if len(takes) >= FEWEST_TAKES:
-        return Units(f"{len(takes)} takes", _members(by_take, takes))
-    by_block = [[f"{take} {start // block}" for take, start in source] for source in sources]
-    blocks = sorted({name for names in by_block for name in names})
-    return Units(f"{len(blocks)} blocks of {BLOCK_S:g} s of {len(takes)} takes", _members(by_block, blocks))
 
 
-def _members(names: list[list[str]], units: list[str]) -> np.ndarray:
-    members = np.zeros((len(units), len(names)), bool)
-    for window, mine in enumerate(names):
-        members[[units.index(name) for name in mine], window] = True
-    return members
-
-
-def draws(units: Units) -> np.ndarray:
-    """How often each window counts in each resampling of the units, ``(RESAMPLES, windows)``.
-
-    A window of several units counts as often as the product of theirs (Owen's bootstrap for crossed factors).
-    """
-    n = len(units.members)
-    counts = np.random.default_rng(0).multinomial(n, np.full(n, 1 / n), RESAMPLES)
-    weights = np.ones((RESAMPLES, units.members.shape[1]))
-    for unit, members in enumerate(units.members):
-        weights[:, members] *= counts[:, unit, None]
-    weights[weights.sum(1) == 0] = 1  # nothing was drawn: possible with a handful of units only
-    return weights
+def independent(protocol: Protocol, windows: Windows) -> str:
+    """What intervals are drawn over, in words."""
+    what, owners = units(sources_of(protocol, windows))
+    return f"{count(owners)} {what}"

@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, replace
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import torch
@@ -61,6 +61,8 @@ def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = pr
     checks = validation(data, skeleton, config.history, config.horizon, config.fps, recipe.people)
     if hasattr(raw, "fit_statistics"):
         raw.fit_statistics(torch.from_numpy(_whole_windows(sampler, recipe, config.history)))
+    if hasattr(raw, "fit"):
+        return _solve(recipe, raw, sampler, checks, out, say)
     if recipe.start:
         load_weights(raw, Path(recipe.start)).train()
     optimiser = torch.optim.AdamW(raw.parameters(), recipe.learning_rate, weight_decay=recipe.weight_decay)
@@ -122,6 +124,32 @@ def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = pr
     return out / "best.pt"
 
 
+def _solve(
+    recipe: Recipe,
+    model: Any,
+    sampler: Sampler,
+    checks: dict[str, Windows],
+    out: Path,
+    say: Callable[[str], None],
+) -> Path:
+    """Fit a model that has a closed solution to as many scenes as a recipe has steps and scenes a step."""
+    began, config, random = time.perf_counter(), model.config, np.random.default_rng(recipe.seed)
+    people = max(recipe.people)
+    scenes = [sampler.scene(people, random)[0] for _ in range(recipe.steps * recipe.batch)]
+    positions = torch.from_numpy(np.stack(scenes).astype(np.float32))
+    model.fit(positions[:, : config.history], positions[:, config.history :])
+    scores = {name: ratio(model, windows, config.fps) for name, windows in checks.items()}
+    entry = {
+        "step": recipe.steps, "validation": scores, "score": float(np.mean(list(scores.values()))),
+        "seconds": time.perf_counter() - began, "device": f"{torch.get_num_threads()} CPU threads",
+    }  # fmt: skip
+    (out / "recipe.json").write_text(json.dumps(asdict(recipe), indent=1), encoding="utf-8")
+    (out / "metrics.jsonl").write_text(json.dumps(entry) + "\n", encoding="utf-8")
+    _save({name: value.half() for name, value in model.state_dict().items()}, out / "best.pt")
+    say(f"{recipe.name} {json.dumps(entry)}")
+    return out / "best.pt"
+
+
 def _whole_windows(sampler: Sampler, recipe: Recipe, history: int) -> np.ndarray:
     """Histories of some training batches in which everything was seen, one person each."""
     random = np.random.default_rng(recipe.seed)
@@ -162,9 +190,11 @@ def pace(step: int, recipe: Recipe) -> float:
 
 @torch.no_grad()
 def follow(mean: nn.Module, model: nn.Module, decay: float) -> None:
-    """Move the running mean of the weights towards the model's."""
+    """Move the running mean of the weights towards the model's; statistics of batches are running means already."""
     for average, value in zip(mean.parameters(), model.parameters(), strict=True):
         average.lerp_(value, 1 - decay)
+    for average, value in zip(mean.buffers(), model.buffers(), strict=True):
+        average.copy_(value)
 
 
 def training_takes(recipe: Recipe, data: Path, skeleton: Skeleton) -> tuple[list[Scene], list[Scene]]:

@@ -10,15 +10,10 @@ from hypothesis import settings
 
 from motioncast.core.scene import Scene
 from motioncast.core.skeletons import MRT15
+from motioncast.testing.scenes import standing_pose
 
 settings.register_profile("motioncast", derandomize=True, max_examples=30, deadline=None)
 settings.load_profile("motioncast")
-
-STANDING = {
-    "pelvis": (0, 0, 0.95), "neck": (0, 0, 1.45), "head": (0, 0, 1.62),
-    "hip": (0.1, 0, 0.92), "knee": (0.12, -0.02, 0.50), "ankle": (0.12, 0.02, 0.09),
-    "shoulder": (0.17, 0, 1.40), "elbow": (0.24, 0, 1.12), "wrist": (0.26, -0.05, 0.88),
-}  # fmt: skip
 
 
 @pytest.fixture(scope="session")
@@ -28,16 +23,6 @@ def shared() -> Path:
     if not folder.is_dir():
         pytest.skip(f"needs the open motion data in {folder}")
     return folder
-
-
-def standing_pose() -> np.ndarray:
-    """A person of 1.7 m who stands at the origin and faces -y, ``(15, 3)``."""
-    pose = []
-    for name in MRT15.names:
-        side, _, place = name.partition("_")
-        x, y, z = STANDING[place or name]
-        pose.append((-x if side == "right" else x, y, z))
-    return np.array(pose, np.float32)
 
 
 @pytest.fixture

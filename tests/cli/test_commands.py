@@ -173,3 +173,18 @@ def test_doctor_tells_where_it_computes(command) -> None:
 def test_doctor_survives_a_broken_runtime(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "onnxruntime", None)
     assert providers().startswith("none (")
+
+
+@pytest.mark.parametrize("arguments", [("--to", "fbx"), ("--to", "glb", "--out", "walk.fbx")])
+def test_a_format_that_is_not_written_brings_the_way_there(walk: Path, command, arguments: tuple[str, ...]) -> None:
+    done = command("export", walk, *arguments)
+    assert done.status == 2
+    assert "npz" in done.err
+    assert "Blender" in done.err
+
+
+def test_a_file_that_is_not_read_brings_the_way_there(tmp_path: Path, command) -> None:
+    (tmp_path / "dance.fbx").write_bytes(b"Kaydara FBX Binary  \x00")
+    done = command("forecast", "dance.fbx")
+    assert done.status == 2
+    assert "open it in Blender and export BVH" in " ".join(done.err.split())

@@ -11,7 +11,8 @@ from motioncast.core.card import ModelCard
 from motioncast.core.forecast import Forecast
 from motioncast.inference.baselines import SimpleGuess
 from motioncast.inference.registry import list_models, load
-from motioncast.testing import Check, checks
+from motioncast.inference.session import GraphForecaster
+from motioncast.testing import Check, checks, walkers
 
 CHECKS = [check for card in list_models() for check in checks(load(card.name))]
 
@@ -19,6 +20,22 @@ CHECKS = [check for card in list_models() for check in checks(load(card.name))]
 @pytest.mark.parametrize("check", CHECKS, ids=str)
 def test_contract(check: Check) -> None:
     check()
+
+
+GRAPHS = [model for card in list_models() if isinstance(model := load(card.name), GraphForecaster)]
+
+
+@pytest.mark.parametrize("model", GRAPHS, ids=lambda model: model.card.name)
+def test_scenes_of_a_batch_do_not_mix(model: GraphForecaster) -> None:
+    card = model.card
+    scenes = [walkers(frames=card.history, fps=card.fps, seed=seed).on(card.joints) for seed in range(3)]
+    history, observed = np.stack([scene.positions for scene in scenes]), np.stack([scene.observed for scene in scenes])
+    observed[1, :, 2] = False
+    whole = model.run(history, observed)
+    for index in range(3):
+        alone = model.run(history[[index]], observed[[index]])[0]
+        seen = observed[index, -1].any(-1)
+        np.testing.assert_allclose(alone[:, seen], whole[index][:, seen], atol=card.tolerance_m)
 
 
 CARD = replace(SimpleGuess("zero-velocity").card, name="drifting")

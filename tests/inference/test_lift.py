@@ -3,10 +3,11 @@ from __future__ import annotations
 import numpy as np
 
 from motioncast.core import rotation
+from motioncast.core.resample import bridge
 from motioncast.core.scene import Scene
 from motioncast.core.skeleton import Skeleton
 from motioncast.core.skeletons import MRT15
-from motioncast.inference.lift import Lift, between_frames, keep_lengths, lower, rigid_bones
+from motioncast.inference.lift import Lift, between_frames, keep_lengths, last_pose, lower, rigid_bones
 from motioncast.testing import walkers
 
 FULLER = Skeleton(
@@ -65,7 +66,7 @@ def test_a_stretching_bone_is_not_called_rigid() -> None:
 
 def test_the_answer_passes_through_the_models_frames() -> None:
     line = np.linspace(0, 1, 20)[:, None]
-    fast = between_frames(line[:10], line[10:], 15, 60, 40)
+    fast = between_frames(line, now=9, step=15 / 60, frames=40)
     np.testing.assert_allclose(fast[3::4], line[10:], atol=1e-9)
     assert np.diff(fast[:, 0]).min() > 0
 
@@ -75,3 +76,31 @@ def test_a_short_history_is_not_observed_before_it_begins() -> None:
     assert past.frames == 15
     assert not past.observed[:9].any()
     assert past.observed[9:].all()
+
+
+def test_the_last_pose_is_the_end_of_the_bridged_history() -> None:
+    scene = walkers(people=3)
+    seen = np.random.default_rng(0).random(scene.observed.shape) < 0.2
+    seen[:, 1, 4] = False
+    gappy = Scene(scene.positions, MRT15, 15, seen)
+    np.testing.assert_allclose(last_pose(gappy), bridge(gappy.positions, gappy.observed)[-1], atol=1e-6)
+
+
+def test_a_hand_is_carried_as_a_fit_of_its_own_would() -> None:
+    """A naive twin: one joint, one person and one frame at a time, with singular values."""
+    scene = walkers(people=2)
+    last, answer = fuller(scene), scene.positions[:4, :, :, :].astype(np.float64)
+    lift = Lift.between(MRT15, FULLER)
+    lifted = lift(answer, last)
+    torso = [MRT15.index(name) for name in MRT15.names if name.endswith(("pelvis", "hip", "neck", "shoulder"))]
+    for joint in np.flatnonzero(lift.carried):
+        carriers = lift.carriers[joint]
+        for frame, person in np.ndindex(4, 2):
+            pose, rest = answer[frame, person], last[person]
+            turn = rotation.kabsch(rest[torso] - rest[torso].mean(0), pose[torso] - pose[torso].mean(0))
+            before = (rest[carriers] - rest[carriers[0]]) / np.arange(1, 4)[:, None]
+            after = (pose[carriers] - pose[carriers[0]]) / np.arange(1, 4)[:, None]
+            axes = np.eye(3) * np.sqrt(0.02 * np.square(before).sum())
+            turn = rotation.kabsch(np.vstack([before, axes]), np.vstack([after, rotation.rotate(turn, axes)]))
+            expected = pose[carriers[0]] + rotation.rotate(turn, rest[joint] - rest[carriers[0]])
+            np.testing.assert_allclose(lifted[frame, person, joint], expected, atol=1e-6)

@@ -59,14 +59,6 @@ def test_far_from_the_origin_the_answer_is_as_exact(model: GraphForecaster) -> N
     assert np.abs(apart).max() < 5e-3  # the history itself is rounded to 6e-5 there
 
 
-def test_batches_do_not_mix(model: GraphForecaster) -> None:
-    history = np.stack([walkers(frames=15, seed=seed).positions for seed in range(4)])
-    observed = np.ones(history.shape[:-1], bool)
-    whole = model.run(history, observed)
-    for index in range(4):
-        np.testing.assert_allclose(model.run(history[[index]], observed[[index]])[0], whole[index], atol=1e-5)
-
-
 def test_every_shipped_model_states_its_doubt_and_is_measured() -> None:
     for card in list_models():
         if card.parameters:
@@ -115,3 +107,14 @@ def test_a_card_that_is_missing_is_named(tmp_path) -> None:
 def test_seventeen_people_are_too_many(model: GraphForecaster) -> None:
     with pytest.raises(SceneError, match="at most 16"):
         model.forecast(walkers(people=17))
+
+
+@pytest.mark.parametrize("radius", [{}, {"levels": {"0.5": np.full((45, 15), 0.1).tolist()}}])
+def test_the_error_radius_is_spoken_of_only_where_there_is_one(model: GraphForecaster, radius: dict) -> None:
+    stated = replace(model, card=replace(model.card, radius=radius))
+    scene = walkers(people=2)
+    late = scene.observed.copy()
+    late[:-3, 1] = False
+    answer = stated.forecast(replace(scene, observed=late), horizon_s=4.0, samples=2)
+    assert len(answer.warnings) == 3
+    assert all(("radius" in warning) == bool(radius) for warning in answer.warnings)

@@ -4,7 +4,15 @@ import pytest
 
 torch = pytest.importorskip("torch")
 
-from motioncast.models.somoformer import SoMoFormer, SoMoFormerConfig  # noqa: E402
+from motioncast.datasets.mixer import turned  # noqa: E402
+from motioncast.errors import InputError  # noqa: E402
+from motioncast.models.somoformer import (  # noqa: E402
+    RELEASE_DEVIATION,
+    RELEASE_MEAN,
+    SoMoFormer,
+    SoMoFormerConfig,
+    from_release,
+)
 from motioncast.nn.dct import dct_matrix  # noqa: E402
 from motioncast.nn.gaps import fill_gaps  # noqa: E402
 
@@ -25,15 +33,9 @@ def model() -> SoMoFormer:
     return SoMoFormer(SoMoFormerConfig(**SMALL)).eval()
 
 
-@pytest.mark.parametrize(
-    ("sizes", "count"),
-    [
-        ({"skeleton": "somof13", "history": 16, "horizon": 14}, 4_882_842),
-        ({"skeleton": "mrt15", "history": 15, "horizon": 45}, 4_898_736),
-    ],
-)
-def test_the_release_has_its_number_of_parameters(sizes: dict, count: int) -> None:
-    model = SoMoFormer(SoMoFormerConfig(preset="release", cells=3, people=1000, **sizes))
+@pytest.mark.parametrize(("sizes", "count"), [((), 4_882_842), (("mrt15", 15, 45), 4_898_736)])
+def test_the_release_has_its_number_of_parameters(sizes: tuple, count: int) -> None:
+    model = SoMoFormer(SoMoFormerConfig.release(*sizes))
     assert sum(parameter.numel() for parameter in model.parameters()) == count
 
 
@@ -158,3 +160,100 @@ def test_gaps_are_filled_by_the_last_and_the_first_seen_place() -> None:
     observed[:, -1, 0, 1] = True  # the other joint is seen at last: it stands for one that never was
     observed[:, :, 0, 0] = False
     assert fill_gaps(history, observed)[0, :, 0, 0, 0].tolist() == [4, 4, 4, 4, 4]
+
+
+def test_a_row_a_joint_serves_its_three_coordinates() -> None:
+    torch.manual_seed(0)
+    small = SoMoFormer(SoMoFormerConfig(joint_rows="joint", **SMALL)).eval()
+    assert small.joint.weight.shape == (15, 28)
+    large = SoMoFormer(SoMoFormerConfig(**SMALL)).eval()
+    state = small.state_dict()
+    large.load_state_dict({**state, "joint.weight": state["joint.weight"].repeat_interleave(3, 0)})
+    history, observed = scene()
+    torch.testing.assert_close(small(history, observed)[-1], large(history, observed)[-1])
+
+
+def test_turning_and_re_ordering_a_scene_commute_with_its_encoding(model: SoMoFormer) -> None:
+    """What the training's augmentation does to positions it does to the encoded scene: poses and places alike."""
+    history, observed = scene(batch=1)
+    present, neck = observed[:, -1].any(-1), history[:, -1, :, model.neck]
+    between = neck[:, 1] - neck[:, 0]
+    angle = torch.pi / 2
+    around = torch.from_numpy(turned(history.numpy(), angle))
+    beside = around[:, -1, :, model.neck]
+    # the way from person to person turns with them; the release turns each about the own neck only
+    torch.testing.assert_close(beside[:, 1] - beside[:, 0], torch.from_numpy(turned(between.numpy(), angle)))
+
+    def coefficients(history: torch.Tensor) -> torch.Tensor:
+        return model.coefficients(history - history[:, -1:, :, model.neck : model.neck + 1])
+
+    x, y, z = coefficients(history).unbind(3)
+    torch.testing.assert_close(coefficients(around), torch.stack([-y, x, z], 3), atol=1e-5, rtol=0)
+    order = [2, 0, 1]
+    torch.testing.assert_close(coefficients(history[:, :, order]), coefficients(history)[:, order])
+    cells = model.config.cells
+
+    def places(neck: torch.Tensor) -> torch.Tensor:
+        """Column and row of each person's cell."""
+        embedded = model.cell(neck, present)[0]
+        index = (embedded[:, None] == model.grid.weight).all(-1).int().argmax(1)
+        return torch.stack([index // cells, index % cells], -1)
+
+    column, row = places(neck).unbind(-1)
+    assert torch.equal(places(beside), torch.stack([cells - 1 - row, column], -1))
+    assert torch.equal(places(neck[:, order]), places(neck)[order])
+
+
+def authors_state(frames: int = 30, joints: int = 13) -> dict[str, torch.Tensor]:
+    """Random weights under the names of the authors' checkpoints."""
+    generator = torch.Generator().manual_seed(0)
+    shapes: dict[str, tuple[int, ...]] = {
+        "x_embed.weight": (3, 8), "y_embed.weight": (3, 8), "fc_in.weight": (248, frames), "fc_in.bias": (248,),
+        "double_id_encoder.learned_encoding.weight": (3 * joints, 124),
+        "double_id_encoder.person_encoding.weight": (1000, 124),
+        "fc_out.weight": (frames, 256), "fc_out.bias": (frames,), "id_encoder.pe": (5000, 1, 64),
+    }  # fmt: skip
+    layer = torch.nn.TransformerEncoderLayer(256, 8, 1024)
+    for number in range(6):
+        shapes |= {f"transformer.layers.{number}.{name}": tuple(v.shape) for name, v in layer.state_dict().items()}
+    return {name: 0.1 * torch.randn(shape, generator=generator) for name, shape in shapes.items()}
+
+
+def as_the_authors_compute(state: dict[str, torch.Tensor], history: torch.Tensor) -> torch.Tensor:
+    """Their last layer's answer for one scene ``(16, people, 13, 3)``, y up, all people there, near the origin."""
+    people, neck = history.shape[1], history[-1:, :, 6:7]
+    padded = torch.cat([history - neck, (history - neck)[-1:].expand(14, -1, -1, -1)])
+    matrix, mean, deviation = dct_matrix(30), torch.tensor(RELEASE_MEAN), torch.tensor(RELEASE_DEVIATION)
+    coefficients = ((matrix @ padded.flatten(1)).T - mean) / deviation
+    tokens = coefficients @ state["fc_in.weight"].T + state["fc_in.bias"]
+    tables = [state[f"double_id_encoder.{name}_encoding.weight"] for name in ("learned", "person")]
+    joint, person = (table / table.norm(dim=1, keepdim=True).clamp(min=1) for table in tables)
+    tokens[:, 0::2] += joint.repeat(people, 1)
+    tokens[:, 1::2] += person[:people].repeat_interleave(39, 0)
+    cell = (state["x_embed.weight"][0] + state["y_embed.weight"][0]).expand(len(tokens), -1)
+    tokens = torch.cat([tokens, cell], 1)[:, None]
+    for number in range(6):
+        layer = torch.nn.TransformerEncoderLayer(256, 8, 1024).eval()
+        start = f"transformer.layers.{number}."
+        layer.load_state_dict({k.removeprefix(start): v for k, v in state.items() if k.startswith(start)})
+        tokens = layer(tokens)
+    changed = coefficients + tokens[:, 0] @ state["fc_out.weight"].T + state["fc_out.bias"]
+    return ((changed * deviation + mean) @ matrix).T.view(30, people, 13, 3)[16:] + neck
+
+
+@torch.no_grad()
+def test_weights_of_the_authors_answer_as_in_their_world() -> None:
+    state = authors_state()
+    model = SoMoFormer(SoMoFormerConfig.release()).eval()
+    model.load_state_dict(from_release(state))
+    y_up = 0.5 * torch.randn(16, 2, 13, 3, generator=torch.Generator().manual_seed(1))
+    ours = model(y_up[None][..., [2, 0, 1]], torch.ones(1, 16, 2, 13, dtype=torch.bool))[-1][0]
+    torch.testing.assert_close(ours[..., [1, 2, 0]], as_the_authors_compute(state, y_up), atol=1e-4, rtol=0)
+
+
+def test_a_state_of_another_model_is_refused() -> None:
+    state = authors_state()
+    with pytest.raises(InputError, match=r"fc_out\.weight"):
+        from_release({name: value for name, value in state.items() if name != "fc_out.weight"})
+    with pytest.raises(InputError, match="60 coefficients"):
+        from_release(authors_state(frames=60))

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from motioncast.core.skeletons import CMU_ENDS
-from motioncast.datasets.cmu import OFFSET_STEP_M, SLOW_SUBJECTS
+from motioncast.datasets.cmu import SLOW_SUBJECTS
+from motioncast.datasets.offsets import OFFSET_STEP_M
 
 
 @pytest.fixture(scope="session")

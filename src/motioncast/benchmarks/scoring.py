@@ -83,7 +83,7 @@ def figures_of(protocol: Protocol, forecast: np.ndarray, truth: np.ndarray, obse
         return [_vim(errors, observed, moment) for moment in protocol.moments]
     root = list(root_joints(skeleton))
     paths = [positions[:, :, :, root].mean(3) for positions in (forecast, truth)]
-    path_seen = observed[..., root].all(-1)
+    path_seen = np.asarray(observed[..., root].all(-1))
     aligned = joint_errors(forecast - paths[0][..., None, :], truth - paths[1][..., None, :])
     found = [_mm("mpjpe_at", errors, observed, moment) for moment in protocol.moments]
     found += [_mm("mpjpe_until", errors, observed, moment, until=True) for moment in protocol.summary]

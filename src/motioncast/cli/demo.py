@@ -10,7 +10,6 @@ from motioncast.cli.say import note
 from motioncast.cli.writing import make_folder, open_page
 
 HORIZON_S = 3.0
-GUESSES = ("zero-velocity", "constant-velocity", "neck-velocity", "root-velocity-damped")
 
 
 def demo(*, model: str = "somoformer-fast", out: Path = Path("motioncast-demo"), view: bool = False) -> None:
@@ -22,6 +21,7 @@ def demo(*, model: str = "somoformer-fast", out: Path = Path("motioncast-demo"),
         view: Open the page in the browser.
     """
     from motioncast.formats.load import load_scene, save_forecast
+    from motioncast.inference.baselines import RULES
     from motioncast.inference.registry import load
     from motioncast.metrics.curve import error_curve
     from motioncast.view.page import write_page
@@ -30,7 +30,7 @@ def demo(*, model: str = "somoformer-fast", out: Path = Path("motioncast-demo"),
         scene = load_scene(example)
     now = scene.frames - round(HORIZON_S * scene.fps)
     history, truth = scene[:now], scene[now:]
-    answers = {name: load(name).forecast(history, horizon_s=HORIZON_S) for name in (model, *GUESSES)}
+    answers = {name: load(name).forecast(history, horizon_s=HORIZON_S) for name in (model, *RULES)}
     answer = answers[model]
     note(answer.warnings)
     curves = {name: error_curve(guess, truth) for name, guess in answers.items()}

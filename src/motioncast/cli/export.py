@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal
 
 from motioncast.cli.reading import AS_THE_FILE_SAYS, Reading, holds_forecast, read_scene
-from motioncast.cli.writing import check_suffix, name_of, spare_inputs, write_forecast
+from motioncast.cli.writing import SUFFIXES, THROUGH_BLENDER, check_suffix, name_of, spare_inputs, write_forecast
 from motioncast.errors import InputError
 
 
 def export(
     *files: Path,
-    to: Literal["npz", "csv", "trc", "bvh", "glb", "html"],
+    to: str,
     out: Path | None = None,
     sample: int | None = None,
     reading: Reading = AS_THE_FILE_SAYS,
@@ -23,7 +22,8 @@ def export(
 
     Args:
         files: A forecast (npz), or the files of a scene.
-        to: Format to write; html for forecasts only. FBX goes through Blender, see docs/formats.md.
+        to: Format to write: npz, csv, trc, bvh, glb, or for forecasts html. FBX goes through Blender, see
+            docs/formats.md.
         out: File to write. Default: NAME.forecast.SUFFIX of a forecast, NAME.motioncast.SUFFIX of a scene, in the
             current folder.
         sample: Number of the forecast's sample, from 1. Default: the most probable one.
@@ -31,6 +31,9 @@ def export(
     """
     if not files:
         raise InputError("no file came; give a forecast, or the files of a scene")
+    if f".{to}" not in SUFFIXES:
+        known = ", ".join(suffix.removeprefix(".") for suffix in SUFFIXES)
+        raise InputError(f"--to {to} is not one of {known} ({THROUGH_BLENDER})")
     if out is not None:
         check_suffix(out)
     if out is not None and out.suffix.lower() != f".{to}":

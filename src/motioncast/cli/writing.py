@@ -15,6 +15,9 @@ from motioncast.errors import InputError, OutputError
 SUFFIXES = (".npz", ".html", ".bvh", ".glb", ".csv", ".trc")
 """What a forecast can be written as."""
 
+THROUGH_BLENDER = "FBX: write .glb or .bvh, import that into Blender and export FBX there, see docs/formats.md"
+"""What to do about a format that has no open writer."""
+
 ONE_PERSON_A_FILE = (".bvh", ".trc")
 
 
@@ -47,8 +50,7 @@ def check_suffix(path: Path, known: Sequence[str] = SUFFIXES) -> None:
     """
     if path.suffix.lower() not in known:
         raise InputError(
-            f'cannot write {path}: the suffix "{path.suffix}" is not one of {", ".join(known)} '
-            "(FBX: write .glb and export FBX from Blender, see docs/formats.md)"
+            f'cannot write {path}: the suffix "{path.suffix}" is not one of {", ".join(known)} ({THROUGH_BLENDER})'
         )
 
 

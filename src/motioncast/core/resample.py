@@ -17,6 +17,9 @@ from motioncast.errors import SceneError
 
 LOBES = 3
 
+BLOCK = 32
+"""Moments that one matrix product answers: fast, and long takes stay within memory."""
+
 
 def resample(scene: Scene, fps: float) -> Scene:
     """The scene at another frame rate, anchored at its last frame.
@@ -63,13 +66,13 @@ def resample(scene: Scene, fps: float) -> Scene:
 def _continued(scene: Scene) -> np.ndarray:
     """Positions whose gaps are bridged, and which go on by point reflection before and after each joint is seen."""
     positions, observed = bridge(scene.positions, scene.observed), scene.observed
-    time = np.arange(scene.frames)
-    for person, joint in np.argwhere(~observed.all(0) & observed.any(0)):
-        first, last = np.flatnonzero(observed[:, person, joint])[[0, -1]]
-        end = np.clip(time, first, last)
-        mirror = np.clip(2 * end - time, first, last)
-        track = positions[:, person, joint]
-        positions[:, person, joint] = np.where((time == end)[:, None], track, 2 * track[end] - track[mirror])
+    parted = ~observed.all(0) & observed.any(0)
+    seen, tracks, time = observed[:, parted], positions[:, parted], np.arange(scene.frames)[:, None]
+    first, last = seen.argmax(0), scene.frames - 1 - seen[::-1].argmax(0)
+    end = np.clip(time, first, last)
+    mirror = np.clip(2 * end - time, first, last)[..., None]
+    reflected = 2 * np.take_along_axis(tracks, end[..., None], 0) - np.take_along_axis(tracks, mirror, 0)
+    positions[:, parted] = np.where((time == end)[..., None], tracks, reflected)
     return positions
 
 
@@ -99,13 +102,16 @@ def sample(values: np.ndarray, times: np.ndarray, step: float = 1.0) -> np.ndarr
     weights[:, reach] += bend
     weights[:, reach + 1] -= bend
     flat = values.reshape(frames, -1).astype(np.float64)
-    result = np.zeros((len(times), flat.shape[1]))
-    for tap in range(index.shape[1]):  # a loop over taps keeps long takes within memory
-        at, weight = index[:, tap], weights[:, tap, None]
-        end = np.clip(at, 0, frames - 1)
-        mirror = np.clip(2 * end - at, 0, frames - 1)
-        inside = (at == end)[:, None]
-        result += weight * np.where(inside, flat[end], 2 * flat[end] - flat[mirror])
+    earlier = np.minimum(np.arange(reach, 0, -1), frames - 1)
+    later = np.maximum(frames - 2 - np.arange(reach + 1), 0)
+    longer = np.concatenate([2 * flat[0] - flat[earlier], flat, 2 * flat[-1] - flat[later]])
+    result = np.empty((len(times), flat.shape[1]))
+    for start in range(0, len(times), BLOCK):
+        block = slice(start, start + BLOCK)
+        first = index[block].min()
+        matrix = np.zeros((len(index[block]), index[block].max() + 1 - first))
+        np.put_along_axis(matrix, index[block] - first, weights[block], 1)
+        result[block] = matrix @ longer[first + reach : first + reach + matrix.shape[1]]
     return result.reshape(len(times), *values.shape[1:])
 
 
@@ -121,12 +127,19 @@ def bridge(positions: np.ndarray, observed: np.ndarray) -> np.ndarray:
     if observed.all():
         return positions
     filled = positions.astype(np.float64)
-    time = np.arange(len(positions))
     ever = np.any(observed, 0)
-    for person, joint in np.argwhere(~observed.all(0) & ever):
-        seen = observed[:, person, joint]
-        for axis in range(3):
-            track = filled[:, person, joint, axis]
-            filled[:, person, joint, axis] = np.interp(time, time[seen], track[seen])
+    parted = ever & ~observed.all(0)
+    filled[:, parted] = _straight(filled[:, parted], observed[:, parted])
     middle = (filled * ever[..., None]).sum(2) / np.maximum(ever.sum(1), 1)[:, None]
     return np.where(ever[..., None], filled, middle[:, :, None])
+
+
+def _straight(tracks: np.ndarray, seen: np.ndarray) -> np.ndarray:
+    """Tracks ``(time, n, 3)``, each seen ``(time, n)`` at least once, straight from sighting to sighting."""
+    frames, time = len(seen), np.arange(len(seen))[:, None]
+    before = np.maximum.accumulate(np.where(seen, time, -1))
+    after = np.minimum.accumulate(np.where(seen, time, frames)[::-1])[::-1]
+    before, after = np.where(before < 0, after, before), np.where(after == frames, before, after)
+    start, end = (np.take_along_axis(tracks, index[..., None], 0) for index in (before, after))
+    slope = (end - start) / np.maximum(after - before, 1)[..., None]
+    return slope * (time - before)[..., None] + start

@@ -14,11 +14,11 @@ import numpy as np
 
 from motioncast.core.scene import Scene
 from motioncast.core.skeletons import recognise
+from motioncast.datasets.offsets import unpack
 from motioncast.errors import InputError
 from motioncast.formats.files import read_text
 
 FPS = 60.0
-OFFSET_STEP_M = 5e-5
 
 
 def read(folder: str | Path) -> Iterator[Scene]:
@@ -36,6 +36,4 @@ def read(folder: str | Path) -> Iterator[Scene]:
         names = [str(name) for name in data["joint_names"]]
         skeleton = recognise(names, [int(parent) for parent in data["parents"]], "ballplay53")
         for clip in clips:
-            root = data[f"{clip}_root"].astype(np.float64)[:, None]
-            positions = np.concatenate([root, root + data[f"{clip}_rel"] * OFFSET_STEP_M], 1)
-            yield Scene(positions[:, None], skeleton, FPS, people=(clip,), source=f"BallPlay {clip}")
+            yield Scene(unpack(data, clip), skeleton, FPS, people=(clip,), source=f"BallPlay {clip}")

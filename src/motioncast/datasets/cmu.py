@@ -26,6 +26,7 @@ import numpy as np
 from motioncast.core.rotation import from_matrix
 from motioncast.core.scene import Scene, join
 from motioncast.core.skeletons import recognise
+from motioncast.datasets.offsets import unpack
 from motioncast.errors import FormatError, InputError
 from motioncast.formats.asf_amc import Acclaim, parse_amc, parse_asf, scene_of
 from motioncast.formats.files import read_text
@@ -41,7 +42,6 @@ COUPLE = (60, 61)
 SAME_ACTOR = {16: 1, 17: 1, 18: 1, 20: 1}
 """Subjects whose skeletons carry the name of another subject's actor, and that subject."""
 
-OFFSET_STEP_M = 5e-5
 LAST_BAD_FRAME = {"16_15": 2}
 """Takes that start in a stretched-arm pose and jump out of it: frames to drop."""
 
@@ -234,10 +234,7 @@ def _read_positions(place: Path, group: list[Take]) -> Iterator[Scene]:
         names = [str(name) for name in data["joint_names"]]
         skeleton = recognise(names, [int(parent) for parent in data["parents"]], "cmu31")
         for take in group:
-            root = data[f"{take.name}_root"].astype(np.float64)[:, None]
-            joints = root + data[f"{take.name}_rel"] * OFFSET_STEP_M
-            positions = np.concatenate([root, joints], 1)[:, None]
-            yield Scene(positions, skeleton, take.fps, people=(take.name,), source=f"CMU {take.name}")
+            yield Scene(unpack(data, take.name), skeleton, take.fps, people=(take.name,), source=f"CMU {take.name}")
 
 
 def _read_tree(place: Path, group: list[Take]) -> Iterator[Scene]:

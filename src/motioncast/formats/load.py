@@ -88,6 +88,10 @@ def load_scene(
     return scenes[0] if len(scenes) == 1 else join(scenes)
 
 
+FOR_BLENDER = (".fbx", ".dae", ".blend", ".usd", ".usda", ".usdc", ".usdz", ".abc")
+"""Animation files that are not read here, but that Blender opens."""
+
+
 def format_of(path: str | Path) -> Format:
     """The format of a file, from its suffix and its first bytes.
 
@@ -103,7 +107,8 @@ def format_of(path: str | Path) -> Format:
     if ours:  # its reader says best what is wrong with the file
         return ours[0]
     known = ", ".join(suffix for entry in FORMATS.values() for suffix in entry.suffixes)
-    raise InputError(f"{path} is of no known format; expected one of {known}, .amc")
+    advice = "; open it in Blender and export BVH" if suffix in FOR_BLENDER else ""
+    raise InputError(f"{path} is of no known format; expected one of {known}, .amc{advice}")
 
 
 def save_scene(scene: Scene, path: str | Path) -> tuple[Path, ...]:

@@ -89,7 +89,6 @@ RULES: dict[str, Rule] = {
 }
 """Guesses by name. A rule gets the last frames at 15 a second and how many such frames to look ahead."""
 
-
 STRETCHING = {"rigid_bones": "each joint goes its own straight way, so limbs stretch"}
 
 
@@ -128,7 +127,7 @@ class SimpleGuess:
         frames = frames_ahead(self.card, scene, horizon_s)
         asked = scene.select(present(scene))
         moved = guess(RULES[self.name], asked, frames)
-        warnings = one_future(self.name, samples)
+        warnings = one_future(self.card, samples)
         return Forecast(moved[None], scene, asked.people, self.card, seed=seed, warnings=warnings)
 
     def stream(self, fps: float, skeleton: Skeleton | None = None, horizon_s: float | None = None) -> Stream:
@@ -182,7 +181,7 @@ def frames_ahead(card: ModelCard, scene: Scene, horizon_s: float | None) -> int:
     return max(1, round(horizon_s * scene.fps))
 
 
-def one_future(name: str, samples: int) -> tuple[str, ...]:
+def one_future(card: ModelCard, samples: int) -> tuple[str, ...]:
     """What is said to a user who asks a model of one future for several.
 
     Raises:
@@ -192,4 +191,5 @@ def one_future(name: str, samples: int) -> tuple[str, ...]:
         raise InputError(f"{samples} samples were asked for; ask for at least 1")
     if samples == 1:
         return ()
-    return (f'model "{name}" has one future, not {samples}; its doubt is the error radius',)
+    doubt = "; its doubt is the error radius" if card.radius else ""
+    return (f'model "{card.name}" has one future, not {samples}{doubt}',)

@@ -23,6 +23,7 @@ from motioncast.inference.lift import (
     between_frames,
     between_sightings,
     keep_lengths,
+    last_pose,
     lower,
     needed_frames,
     reach,
@@ -87,7 +88,7 @@ class GraphForecaster:
     ) -> Forecast:
         """As :meth:`forecast`, for a history of any length: who was seen too briefly is answered by a simple guess."""
         card = self.card
-        warnings = list(one_future(card.name, samples))
+        warnings = list(one_future(card, samples))
         recent = scene[-needed_frames(card.history, card.fps, scene.fps) :]
         asked = recent.select(present(scene))
         if len(asked.people) > card.people:
@@ -110,24 +111,24 @@ class GraphForecaster:
             if model_frames > card.horizon:
                 warnings.append(
                     f'{frames / scene.fps:.2f} s are beyond the {card.horizon / card.fps:.2f} s of "{card.name}"; '
-                    "its own forecast was taken as history for the rest, and the error radius there is extrapolated"
+                    "its own forecast was taken as history for the rest"
+                    + (", and the error radius there is extrapolated" if card.radius else "")
                 )
             future = self.roll(positions, between_sightings(past.observed) & ~brief[:, None], model_frames, progress)
-            last = bridge(asked.positions, asked.observed)[-1].astype(np.float64)
-            nearest = positions[-reach(ratio) - 1 :]
-            lifted = between_frames(lift(nearest, last), lift(future, last), card.fps, scene.fps, frames)
+            whole = lift(np.concatenate([positions[-reach(ratio) - 1 :], future]), last_pose(asked))
+            lifted = between_frames(whole, reach(ratio), ratio, frames)
             if self.rigid:
                 lifted = keep_lengths(lifted, scene.skeleton, rigid_bones(asked))
         if brief.any():
             names = ", ".join(person for person, short in zip(asked.people, brief, strict=True) if short)
             warnings.append(
-                f"{names}: seen too briefly for the model; their last motion, fading, is carried on, "
-                "and the error radius does not hold for them"
+                f"{names}: seen too briefly for the model; their last motion, fading, is carried on"
+                + (", and the error radius does not hold for them" if card.radius else "")
             )
             lifted[:, brief] = guess(root_velocity_damped, asked, frames)[:, brief]
         return Forecast(
-            lifted[None], scene, asked.people, card, radius_m=self.radius(lift, scene, frames), carried=lift.carried,
-            guessed=brief, seed=seed, warnings=tuple(warnings),
+            lifted[None].astype(np.float32, "C"), scene, asked.people, card, radius_m=self.radius(lift, scene, frames),
+            carried=lift.carried, guessed=brief, seed=seed, warnings=tuple(warnings),
         )  # fmt: skip
 
     def roll(

@@ -69,7 +69,8 @@ def root_error_at(
         array([0.3])
     """
     errors = joint_errors(_root(forecast, root), _root(truth, root))
-    return seen_mean(errors, None if observed is None else np.all(observed[..., list(root)], -1, keepdims=True), (0, 2, 3))
+    seen = None if observed is None else np.all(observed[..., list(root)], -1, keepdims=True)
+    return seen_mean(errors, seen, (0, 2, 3))
 
 
 def _root(positions: np.ndarray, root: Sequence[int]) -> np.ndarray:

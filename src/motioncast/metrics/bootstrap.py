@@ -86,7 +86,7 @@ def draws(owners: Sequence[Sequence[int]], resamples: int = 1000, seed: int = 0)
 
     Example:
         >>> draws([[0], [1], [0, 1]], resamples=3).tolist()
-        [[1.0, 1.0, 1.0], [0.0, 2.0, 0.0], [2.0, 0.0, 0.0]]
+        [[1.0, 1.0, 1.0], [1.0, 1.0, 1.0], [0.0, 2.0, 0.0]]
     """
     n = count(owners)
     drawn = np.random.default_rng(seed).multinomial(n, np.full(n, 1 / n), resamples)

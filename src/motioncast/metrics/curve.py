@@ -6,6 +6,7 @@ import numpy as np
 
 from motioncast.core.forecast import Forecast
 from motioncast.core.scene import Scene
+from motioncast.metrics.moments import frame_at
 from motioncast.metrics.position import mpjpe_at
 
 
@@ -24,12 +25,11 @@ def error_curve(forecast: Forecast, truth: Scene) -> np.ndarray:
     happened = truth.select(forecast.people)
     frames = min(len(forecast.best), happened.frames)
     known = ~forecast.carried
-    with np.errstate(invalid="ignore"):  # 0 / 0 where nobody was seen
-        return mpjpe_at(
-            forecast.best[None, :frames, :, known],
-            happened.positions[None, :frames, :, known],
-            happened.observed[None, :frames, :, known],
-        )
+    return mpjpe_at(
+        forecast.best[None, :frames, :, known],
+        happened.positions[None, :frames, :, known],
+        happened.observed[None, :frames, :, known],
+    )
 
 
 def error_at(curve: np.ndarray, seconds: float, fps: float) -> float | None:
@@ -39,7 +39,7 @@ def error_at(curve: np.ndarray, seconds: float, fps: float) -> float | None:
         >>> error_at(np.array([0.1, 0.2, 0.3]), 0.2, fps=10), error_at(np.array([0.1]), 0.2, fps=10)
         (0.2, None)
     """
-    frame = round(seconds * fps) - 1
-    if not 0 <= frame < len(curve) or np.isnan(curve[frame]):
+    frame = frame_at(seconds, fps)
+    if not 1 <= frame <= len(curve) or np.isnan(curve[frame - 1]):
         return None
-    return float(curve[frame])
+    return float(curve[frame - 1])

@@ -10,7 +10,8 @@ read after every layer (Eq. 4).
 
 Two presets. ``paper`` is the text made to work: a mask that hides absent people, a 5 x 5 grid around the middle
 of the people, a table of 16 people, coefficients standardised by statistics of the training windows. ``release``
-repeats what the authors' public code computes, for those who hold its weights; it differs from the text in this:
+repeats what the authors' public code computes, for those who hold its weights (``SoMoFormerConfig.release``,
+``from_release``); it differs from the text in this:
 
 - the grid is three cells an axis, the two axes' embeddings added, and the index is floor(3 v / 3) of a position
   in [0, 1], so it is 1 only at the far end: in effect constant;
@@ -29,6 +30,7 @@ Shapes: B scenes, H history, F = H + horizon, P people, J joints, d width.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -36,6 +38,7 @@ import torch
 from torch import Tensor, nn
 
 from motioncast.core.skeletons import SKELETONS
+from motioncast.errors import InputError
 from motioncast.nn.attention import EncoderLayer
 from motioncast.nn.dct import dct_matrix, exact
 from motioncast.nn.gaps import fill_gaps
@@ -46,6 +49,18 @@ FAR = -1e9
 
 RELEASE_EXTENT_M = 3.0
 """The release's grid ends at this distance from the origin."""
+
+RELEASE_MEAN = (
+    -7.1789e-2, 4.1777e-2, 2.0464e-2, 4.6075e-3, 6.3129e-4, 2.2184e-3, 2.2500e-3, 6.2809e-4, 1.6267e-4, 7.9969e-4,
+    7.8669e-4, 1.4957e-4, 5.4564e-5, 4.1828e-4, 3.6941e-4, 1.3337e-5, 2.7676e-5, 2.8088e-4, 2.1341e-4, -3.4786e-5,
+    5.6285e-6, 1.8702e-4, 1.1101e-4, -6.3937e-5, 4.1189e-6, 1.4035e-4, 4.3991e-5, -9.2744e-5, 4.7437e-7, 1.1380e-4,
+)  # fmt: skip
+RELEASE_DEVIATION = (
+    0.5954, 0.5319, 0.2537, 0.0897, 0.0567, 0.0498, 0.0459, 0.0383, 0.0321, 0.0262, 0.0189, 0.0091, 0.0072, 0.0085,
+    0.0073, 0.0042, 0.0036, 0.0050, 0.0039, 0.0027, 0.0022, 0.0036, 0.0024, 0.0025, 0.0017, 0.0029, 0.0016, 0.0024,
+    0.0015, 0.0026,
+)  # fmt: skip
+"""Statistics of the 30 coefficients that the release computes with; its checkpoints do not hold them."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +81,8 @@ class SoMoFormerConfig:
         cells: Grid cells along each axis.
         extent_m: The grid reaches this far from the middle of the people on either side.
         people: Rows of the person table: most people in a scene.
+        joint_rows: Whether the joint table has a row for each ``coordinate`` of a joint, as the release, or one for
+            each ``joint``, as the text may be read.
         dropout: Share of dropped channels in training.
         squared: Whether the loss squares the distance, as Eq. 4 prints, or not, as the release does.
     """
@@ -83,8 +100,19 @@ class SoMoFormerConfig:
     cells: int = 5
     extent_m: float = 5.0
     people: int = 16
+    joint_rows: Literal["coordinate", "joint"] = "coordinate"
     dropout: float = 0.1
     squared: bool = False
+
+    @classmethod
+    def release(cls, skeleton: str = "somof13", history: int = 16, horizon: int = 14) -> SoMoFormerConfig:
+        """The sizes of the authors' code: 4,882,842 parameters in the SoMoF setting.
+
+        Example:
+            >>> SoMoFormerConfig.release().people
+            1000
+        """
+        return cls(skeleton, history, horizon, preset="release", cells=3, people=1000)
 
 
 class SoMoFormer(nn.Module):
@@ -107,7 +135,8 @@ class SoMoFormer(nn.Module):
         content = config.width - config.grid_width
         self.embed = nn.Linear(frames, content)
         rows = content // 2 if released else content
-        self.joint = nn.Embedding(3 * self.joints, rows)
+        self.repeats = 3 if config.joint_rows == "joint" else 1
+        self.joint = nn.Embedding(3 * self.joints // self.repeats, rows)
         self.person = nn.Embedding(config.people, rows)
         self.grid = nn.Embedding(2 * config.cells if released else config.cells**2, config.grid_width)
         self.layers = nn.ModuleList(
@@ -170,7 +199,7 @@ class SoMoFormer(nn.Module):
         """Embedded tokens, ``(B, 3 P J, d)``."""
         batch, people = coefficients.shape[:2]
         content = self.embed(coefficients).flatten(2, 3)  # B, P, 3 J, d - g
-        joint = self.joint.weight[None, None]
+        joint = self.joint.weight.repeat_interleave(self.repeats, 0)[None, None]
         # in training every row of the table gets to stand for somebody (Sec. 3.7: empty slots are permuted too)
         rows = torch.randperm(self.config.people)[:people] if self.training else slice(people)
         person = self.person.weight[rows][None, :, None]
@@ -219,5 +248,53 @@ def shortened(rows: Tensor) -> Tensor:
     """Rows of a table, at most of length 1."""
     return rows / rows.norm(dim=-1, keepdim=True).clamp(min=1)
 
+
+def from_release(checkpoint: Mapping[str, Tensor]) -> dict[str, Tensor]:
+    """The state of this model, ``release`` preset, from that of the authors' model.
+
+    Their world has y up and ours z: their (x, y, z) are our (y, z, x), a turn, since no weight knows a heading. So
+    rows of the joint table and the two halves of the grid change places.
+
+    Args:
+        checkpoint: The entry ``model`` of their file, in the SoMoF setting.
+
+    Raises:
+        InputError: If it is the state of another model.
+
+    Example:
+        A checkpoint is read without running code that it may hold::
+
+            state = torch.load("checkpoint.pth.tar", map_location="cpu", weights_only=True)["model"]
+            model = SoMoFormer(SoMoFormerConfig.release())
+            model.load_state_dict(from_release(state))
+    """
+    state = {"mean": torch.tensor(RELEASE_MEAN), "deviation": torch.tensor(RELEASE_DEVIATION)}
+    try:
+        joint = checkpoint["double_id_encoder.learned_encoding.weight"].unflatten(0, (-1, 3))
+        state["joint.weight"] = joint[:, [2, 0, 1]].flatten(0, 1)
+        state["person.weight"] = checkpoint["double_id_encoder.person_encoding.weight"]
+        state["grid.weight"] = torch.cat([checkpoint["y_embed.weight"], checkpoint["x_embed.weight"]])
+        layers = sum(name.endswith(".norm1.bias") for name in checkpoint)
+        for part in ("weight", "bias"):
+            state[f"embed.{part}"], state[f"head.{part}"] = checkpoint[f"fc_in.{part}"], checkpoint[f"fc_out.{part}"]
+            for layer in range(layers):
+                for ours, theirs in RELEASE_LAYER.items():
+                    state[f"layers.{layer}.{ours}.{part}"] = checkpoint[f"transformer.layers.{layer}.{theirs}{part}"]
+    except KeyError as error:
+        raise InputError(
+            f"the checkpoint has no {error}; expected the state of the authors' SoMoFormer with a grid, which is the "
+            'entry "model" of their file'
+        ) from None
+    frames = state["embed.weight"].shape[1]
+    if frames != len(RELEASE_MEAN):
+        raise InputError(f"the checkpoint reads {frames} coefficients; the release has statistics for 30 only")
+    return state
+
+
+RELEASE_LAYER = {
+    "project": "self_attn.in_proj_", "merge": "self_attn.out_proj.", "rise": "linear1.", "fall": "linear2.",
+    "norm_attention": "norm1.", "norm_feed": "norm2.",
+}  # fmt: skip
+"""Names in a layer of ours, and theirs up to ``weight`` or ``bias``."""
 
 MODEL, CONFIG = SoMoFormer, SoMoFormerConfig

@@ -127,6 +127,44 @@ def absent_person(model: Forecaster) -> None:
     _close(model, answer.samples, _ask(model, scene.select(scene.people[:2])).samples, "an absent person")
 
 
+def padding(model: Forecaster) -> None:
+    """A slot for a person who is never seen changes nothing."""
+    scene = walkers()
+    padded = Scene(
+        np.pad(scene.positions, ((0, 0), (0, 2), (0, 0), (0, 0))),
+        scene.skeleton,
+        scene.fps,
+        np.pad(scene.observed, ((0, 0), (0, 2), (0, 0))),
+    )
+    answer = _ask(model, padded)
+    assert answer.people == scene.people
+    _close(model, answer.samples, _ask(model, scene).samples, "empty slots")
+
+
+def not_a_number(model: Forecaster) -> None:
+    """What is not a number counts as not seen; numbers beyond reason are refused with a sentence, or answered."""
+    scene = walkers()
+    holes = scene.observed.copy()
+    holes[-4:-2, 0, 14] = False
+    holes[3, 1] = False
+    answer = _ask(model, replace(scene, positions=np.where(holes[..., None], scene.positions, np.nan), observed=holes))
+    assert np.isfinite(answer.samples).all()
+    try:
+        answer = _ask(model, replace(scene, positions=scene.positions * np.float32(1e30)))
+    except SceneError:
+        return
+    assert np.isfinite(answer.samples).all()
+
+
+def apart_from_others(model: Forecaster) -> None:
+    """A scene is answered as if no other had been asked about: nothing is kept from one to the next."""
+    scene = walkers()
+    alone = _ask(model, scene).samples
+    for other in (walkers(people=5, seed=1), walkers(people=1, seed=2)):
+        _ask(model, other)
+    np.testing.assert_array_equal(_ask(model, scene).samples, alone)
+
+
 def one_person(model: Forecaster) -> None:
     """One person alone is a scene."""
     assert _ask(model, walkers(people=1)).samples.shape[2] == 1
@@ -239,8 +277,9 @@ def no_step_at_now(model: Forecaster) -> None:
 CLAUSES: dict[str, Callable[[Forecaster], None]] = {
     clause.__name__: clause
     for clause in (
-        moving, turning, reordering, absent_person, one_person, late_person, frame_rate, seed,
-        question_untouched, gaps, nobody, shorter_and_longer, many_samples, rigid_bones, no_step_at_now,
+        moving, turning, reordering, absent_person, padding, not_a_number, apart_from_others, one_person,
+        late_person, frame_rate, seed, question_untouched, gaps, nobody, shorter_and_longer, many_samples,
+        rigid_bones, no_step_at_now,
     )
 }  # fmt: skip
 """Every clause by name."""

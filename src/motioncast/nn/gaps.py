@@ -15,17 +15,14 @@ def fill_gaps(history: Tensor, observed: Tensor) -> Tensor:
         history: ``(batch, time, people, joints, 3)`` metres.
         observed: ``(batch, time, people, joints)`` bool.
     """
-    last = observed[:, -1, ..., None].float()
-    count = last.sum(2, keepdim=True).clamp(min=1)
-    middle = (history[:, -1] * last).sum(2, keepdim=True) / count
-    seen = observed[..., None]
-    frames = list(history.unbind(1))
-    ever = seen.any(1)
-    backwards = torch.where(seen[:, -1], frames[-1], torch.where(ever, frames[-1] * 0, middle))
-    for time in range(len(frames) - 1, -1, -1):  # the first seen position serves for the frames before it
-        backwards = torch.where(seen[:, time], frames[time], backwards)
-    current, filled = backwards, []
-    for time in range(len(frames)):
-        current = torch.where(seen[:, time], frames[time], current)
-        filled.append(current)
-    return torch.stack(filled, 1)
+    now = observed[:, -1, ..., None].float()
+    middle = (history[:, -1] * now).sum(2, keepdim=True) / now.sum(2, keepdim=True).clamp(min=1)
+    frames = observed.shape[1]
+    seen, number = observed.float(), torch.arange(1, frames + 1, device=history.device).float()
+    until = (number[:, None] >= number).float()
+    # the number of the last frame up to each one in which the joint was seen, from 1; 0 where there is none
+    last = (seen * number[:, None, None])[:, None].mul(until[:, :, None, None]).amax(2)
+    first = frames + 1 - (seen * number.flip(0)[:, None, None]).amax(1, keepdim=True)
+    source = (torch.where(last > 0, last, first) - 1).clamp(max=frames - 1).long()
+    filled = history.gather(1, source[..., None].expand_as(history))
+    return torch.where(observed.any(1, keepdim=True)[..., None], filled, middle[:, None])

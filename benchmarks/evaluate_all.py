@@ -31,14 +31,16 @@ def main() -> None:
     parser.add_argument("--only", default="*", help="pattern of model names")
     parser.add_argument("--benchmarks", default="*", help="pattern of benchmark names")
     asked = parser.parse_args()
-    models = [load(card.name) for card in list_models()]
-    models += [load(path) for folder in asked.models for path in sorted(folder.glob("*.onnx"))]
+    shipped = [load(card.name) for card in list_models()]
+    models = shipped + [load(path) for folder in asked.models for path in sorted(folder.glob("*.onnx"))]
     for benchmark, (protocol, _) in BENCHMARKS.items():
         if benchmark == "somof" or not fnmatch(benchmark, asked.benchmarks):  # SoMoF's data is not open
             continue
         for model in models:
             if fnmatch(model.card.name, asked.only) and fits(model.card, protocol):
-                measure(model, benchmark, asked.data)
+                save(model, benchmark, asked.data)
+                if model in shipped and isinstance(model, GraphForecaster) and benchmark in ("cmu-duet", "cmu-crowd"):
+                    variants(model, benchmark, asked.data)
 
 
 def fits(card: ModelCard, protocol: Protocol) -> bool:
@@ -49,14 +51,11 @@ def fits(card: ModelCard, protocol: Protocol) -> bool:
     return same and (card.horizon == protocol.horizon or protocol.name == "cmu-solo-4s")
 
 
-def measure(model: Forecaster, benchmark: str, data: Path) -> None:
-    """Writes one result, and for graphs on the couple the ones that tell what the partner and rigid limbs are worth."""
-    save(model, benchmark, data)
-    if isinstance(model, GraphForecaster) and benchmark in ("cmu-duet", "cmu-crowd"):
-        if model.rigid:
-            free = replace(model.card, name=f"{model.card.name} (limbs may stretch)")
-            save(replace(model, rigid=False, card=free), benchmark, data)
-        save(model, benchmark, data, alone=True)
+def variants(model: GraphForecaster, benchmark: str, data: Path) -> None:
+    """What rigid limbs and the other people are worth to a model that ships."""
+    free = replace(model.card, name=f"{model.card.name} (limbs may stretch)")
+    save(replace(model, rigid=False, card=free), benchmark, data)
+    save(model, benchmark, data, alone=True)
 
 
 def save(model: Forecaster, benchmark: str, data: Path, *, alone: bool = False) -> None:

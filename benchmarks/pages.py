@@ -66,7 +66,7 @@ def index(boards: list[Leaderboard]) -> str:
         "|---|---|---|---:|---|",
     ]
     for board in boards:
-        best = next(place for place in board.places if "(" not in place.model)
+        best = next(place for place in board.places if not place.variant)
         ratio = best.best.ratio
         interval = "" if ratio.low is None else f"{ratio.low:.3f} to {ratio.high:.3f}"
         lines.append(

@@ -35,6 +35,11 @@ class Place:
     median_ms: float | None
 
     @property
+    def variant(self) -> bool:
+        """Whether this is a model under another condition, such as one that sees nobody else."""
+        return "(" in self.model
+
+    @property
     def value(self) -> float:
         """The ratio to standing still, the mean of the seeds."""
         return sum(self.seeds) / len(self.seeds)
@@ -197,8 +202,9 @@ def picture(board: Leaderboard, path: Path) -> None:
     figure = Figure(figsize=(8, 4.5), layout="constrained")
     axes = figure.subplots()
     colours = matplotlib.colormaps["tab20"]
-    top = 1.15 * max(row.value for place in board.places for row in _moments(place.best) if place.value <= 1.0)
-    for number, place in enumerate(board.places):
+    shown = [place for place in board.places if not place.variant]
+    top = 1.15 * max(row.value for place in shown for row in _moments(place.best) if place.value <= 1.0)
+    for number, place in enumerate(shown):
         rows = _moments(place.best)
         rule = not place.best.parameters
         axes.plot(

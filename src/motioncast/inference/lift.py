@@ -2,9 +2,6 @@
 
 A model knows some joints at one frame rate. What it is asked about has another skeleton and another rate; joints
 that the model does not know are carried rigidly by those that it knows, and bones keep their length.
-
-On the way back joints and axes come first, ``(joints, 3, people, time)``: whole rows of people and frames are
-computed with at once, as a live stream of sixteen people needs it.
 """
 
 from __future__ import annotations
@@ -76,32 +73,12 @@ def between_frames(whole: np.ndarray, now: int, step: float, frames: int) -> np.
     """A model's answer at the frames of the scene, without a step where history and answer meet.
 
     Args:
-        whole: History and answer, ``(..., time)`` at the model's rate.
+        whole: History and answer, ``(time, ...)`` at the model's rate.
         now: The last frame of history in it.
         step: Frames of the model from one frame of the scene to the next.
         frames: Frames wanted.
-
-    Returns:
-        ``(..., frames)``.
     """
-    count = whole.shape[-1]
-    if count * frames > LARGEST_MATRIX:
-        return np.moveaxis(sample(np.moveaxis(whole, -1, 0), _times(count, now, step, frames), step), 0, -1)
-    return whole @ _weights(count, now, step, frames).astype(whole.dtype)
-
-
-LARGEST_MATRIX = 300_000
-"""Entries of an interpolation that is kept as a matrix; longer answers are read piece by piece."""
-
-
-def _times(count: int, now: int, step: float, frames: int) -> np.ndarray:
-    return np.minimum(now + step * np.arange(1, frames + 1), count - 1)
-
-
-@lru_cache(maxsize=8)
-def _weights(count: int, now: int, step: float, frames: int) -> np.ndarray:
-    """What each frame of the model counts in each frame of the scene, ``(count, frames)``."""
-    return sample(np.eye(count), _times(count, now, step, frames), step).T.copy()
+    return sample(whole, np.minimum(now + step * np.arange(1, frames + 1), len(whole) - 1), step)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -140,38 +117,44 @@ class Lift:
         """All joints of the question.
 
         Args:
-            answer: The model's joints, ``(model joints, 3, people, time)``.
-            last: The pose in the last frame of history, ``(joints, 3, people)``.
+            answer: The model's joints, ``(time, people, model joints, 3)``.
+            last: The pose in the last frame of history, ``(people, joints, 3)``.
 
         Returns:
-            ``(joints, 3, people, time)``.
+            ``(time, people, joints, 3)``.
         """
-        lifted = np.empty((len(self.skeleton), *answer.shape[1:]), answer.dtype)
-        lifted[self.known] = answer[self.served]
+        # joints and axes first: whole rows of frames and people are computed with at once
+        lifted = np.empty((len(self.skeleton), 3, *answer.shape[:2]))
+        lifted[self.known] = answer.transpose(2, 3, 0, 1)[self.served]
         if self.carried.any():
-            self._carry(lifted, last[..., None])
-        return lifted
+            self._carry(lifted, last.transpose(1, 2, 0).copy()[:, :, None])
+        return lifted.transpose(2, 3, 0, 1)
 
     def _carry(self, lifted: np.ndarray, last: np.ndarray) -> None:
-        """Puts the carried joints in; the last pose is one frame long."""
+        """Puts the carried joints in; ``(joints, 3, time, people)``, the last pose with a time of one frame."""
         torso = [joint for joint in self.known if self.skeleton.landmarks[joint] in TORSO]
         torso_turn = best_turns(_fit(_spread(lifted[torso]), _spread(last[torso])))
         # joints of one hand have the same carriers: they turn as one
-        alike, group = np.unique(self.carriers[self.carried], axis=0, return_inverse=True)
-        for number, (anchor, *others) in enumerate(alike):
-            share = 1.0 / np.arange(2, len(others) + 2).reshape(-1, 1, 1, 1)  # the nearer counts more
-            before, after = ((at[others] - at[anchor]) * share for at in (last, lifted))
-            # the torso's turn decides what the carriers leave open
-            open_share = TORSO_SHARE * np.square(before).sum((0, 1))
-            turn = best_turns(_fit(after, before) + open_share * torso_turn)
-            for joint in np.flatnonzero(self.carried)[group.reshape(-1) == number]:
-                x, y, z = last[joint] - last[anchor]
-                lifted[joint] = lifted[anchor] + (turn[:, 0] * x + turn[:, 1] * y + turn[:, 2] * z)
+        carriers, group = np.unique(self.carriers[self.carried], axis=0, return_inverse=True)
+        first, others = carriers[:, 0], carriers.T[1:]
+        share = 1.0 / np.arange(2, carriers.shape[1] + 1).reshape(-1, 1, 1, 1, 1)  # the nearer counts more
+        before, after = ((at[others] - at[first]) * share for at in (last, lifted))
+        # the torso's turn decides what the carriers leave open
+        open_share = TORSO_SHARE * np.square(before).sum((0, 2))
+        turns = best_turns(_fit(after, before) + open_share * torso_turn[:, :, None])
+        for joint, turn in zip(np.flatnonzero(self.carried), group.reshape(-1), strict=True):
+            anchor = self.carriers[joint, 0]
+            x, y, z = last[joint] - last[anchor]
+            matrix = turns[:, :, turn]
+            lifted[joint] = lifted[anchor] + (matrix[:, 0] * x + matrix[:, 1] * y + matrix[:, 2] * z)
 
 
 def _fit(after: np.ndarray, before: np.ndarray) -> np.ndarray:
-    """What :func:`best_turns` makes a turn of: sums over vectors ``(n, 3, people, time)``, ``(3, 3, people, time)``."""
-    return np.stack([(after[:, axis, None] * before).sum(0) for axis in range(3)])
+    """What :func:`best_turns` makes turns of, ``(3, 3, ..., t, p)``: sums over vectors ``(n, ..., 3, t, p)``."""
+    fit = np.empty((3, 3, *after.shape[1:-3], *after.shape[-2:]))
+    for i, j in np.ndindex(3, 3):
+        fit[i, j] = (after[..., i, :, :] * before[..., j, :, :]).sum(0)
+    return fit
 
 
 def _spread(points: np.ndarray) -> np.ndarray:
@@ -216,19 +199,19 @@ def keep_lengths(positions: np.ndarray, skeleton: Skeleton, lengths: np.ndarray)
     """Positions whose rigid bones have their length, from the root outwards.
 
     Args:
-        positions: ``(joints, 3, people, time)``.
+        positions: ``(time, people, joints, 3)``.
         skeleton: Their skeleton.
         lengths: ``(people, joints)`` metres, NaN for bones that may stretch.
     """
-    kept, wanted = positions.copy(), lengths.T[..., None].astype(positions.dtype)
+    kept, wanted = positions.transpose(2, 3, 0, 1).copy(), lengths.T[:, None]
     for joints, parents in _tiers(skeleton):
         start, bone = kept[parents], kept[joints]
         bone -= start
         length = np.sqrt(np.square(bone).sum(1))
-        bone *= np.where(np.isnan(wanted[joints]), 1, wanted[joints] / np.maximum(length, 1e-9))[:, None]
+        bone *= np.where(np.isnan(wanted[joints]), 1.0, wanted[joints] / np.maximum(length, 1e-9))[:, None]
         bone += start
         kept[joints] = bone
-    return kept
+    return kept.transpose(2, 3, 0, 1)
 
 
 @lru_cache(maxsize=16)

@@ -261,10 +261,11 @@ class TBIFormer(nn.Module):
 
         A person's own tokens have row 0, those of another person in another window the last.
         """
-        paths = frames[:, 1:, :, self.root].mean(3).unfold(1, self.config.window, 1)  # B, W, P, 3, window
-        paths = paths.permute(0, 2, 1, 4, 3)  # B, P, W, window, 3
-        alike = bucket(warping_distance(paths[:, :, None], paths[:, None]).abs())  # B, P, P, W
         people, windows = frames.shape[2], self.config.history - self.config.window
+        path = frames[:, 1:, :, self.root].mean(3)
+        parts = [path[:, start : start + self.config.window] for start in range(windows)]
+        paths = torch.stack(parts, 1).permute(0, 3, 1, 2, 4)  # B, P, W, window, 3
+        alike = bucket(warping_distance(paths[:, :, None], paths[:, None]).abs())  # B, P, P, W
         person, window = (torch.arange(count, device=frames.device) for count in (people, windows))
         rows = torch.where(window[:, None] == window, alike[..., None], BUCKETS - 1)
         rows = torch.where((person[:, None] == person)[:, :, None, None], 0, rows)  # B, P, P, W, W

@@ -81,6 +81,17 @@ def test_people_are_seen(model: MRT) -> None:
     assert (model(other, observed) - model(history, observed))[:, :, 0].abs().max() > 1e-5
 
 
+def test_steps_go_in_and_come_out_in_their_unit() -> None:
+    torch.manual_seed(0)
+    metres, fine = MRT(MRTConfig(**SMALL)).eval(), MRT(MRTConfig(unit_m=0.1, **SMALL)).eval()
+    fine.load_state_dict(metres.state_dict())
+    with torch.no_grad():
+        fine.embed_step.weight.mul_(0.1)
+        fine.step.weight.mul_(10)
+        fine.step.bias.mul_(10)
+    torch.testing.assert_close(fine(*scene()), metres(*scene()), atol=1e-4, rtol=1e-4)
+
+
 def test_nearness_is_one_at_the_asking_pose_and_falls() -> None:
     frames = torch.zeros(1, 2, 2, 45)
     frames[:, :, 1] = 1.0

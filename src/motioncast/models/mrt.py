@@ -57,8 +57,8 @@ class MRTConfig:
         head_width: Channels of a head.
         feed_forward: Hidden channels of the feed-forward nets.
         dropout: Share of dropped channels in training.
-        unit_m: Steps go in and come out in this unit. Published: about a metre, beside which a step of 15 frames a
-            second is so small that the network takes long to notice it.
+        unit_m: The unit in which steps go in and come out. In the published one, about a metre, a step is so small
+            beside the code of its place in time that training is slow to notice it; 1 / fps makes them metres a second.
     """
 
     skeleton: str = "mrt15"

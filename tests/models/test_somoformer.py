@@ -7,8 +7,6 @@ torch = pytest.importorskip("torch")
 from motioncast.datasets.mixer import turned  # noqa: E402
 from motioncast.errors import InputError  # noqa: E402
 from motioncast.models.somoformer import (  # noqa: E402
-    RELEASE_DEVIATION,
-    RELEASE_MEAN,
     SoMoFormer,
     SoMoFormerConfig,
     from_release,
@@ -219,11 +217,14 @@ def authors_state(frames: int = 30, joints: int = 13) -> dict[str, torch.Tensor]
     return {name: 0.1 * torch.randn(shape, generator=generator) for name, shape in shapes.items()}
 
 
+MEAN, DEVIATION = torch.linspace(-0.05, 0.05, 30), torch.linspace(0.5, 0.01, 30)
+
+
 def as_the_authors_compute(state: dict[str, torch.Tensor], history: torch.Tensor) -> torch.Tensor:
     """Their last layer's answer for one scene ``(16, people, 13, 3)``, y up, all people there, near the origin."""
     people, neck = history.shape[1], history[-1:, :, 6:7]
     padded = torch.cat([history - neck, (history - neck)[-1:].expand(14, -1, -1, -1)])
-    matrix, mean, deviation = dct_matrix(30), torch.tensor(RELEASE_MEAN), torch.tensor(RELEASE_DEVIATION)
+    matrix, mean, deviation = dct_matrix(30), MEAN, DEVIATION
     coefficients = ((matrix @ padded.flatten(1)).T - mean) / deviation
     tokens = coefficients @ state["fc_in.weight"].T + state["fc_in.bias"]
     tables = [state[f"double_id_encoder.{name}_encoding.weight"] for name in ("learned", "person")]
@@ -245,7 +246,7 @@ def as_the_authors_compute(state: dict[str, torch.Tensor], history: torch.Tensor
 def test_weights_of_the_authors_answer_as_in_their_world() -> None:
     state = authors_state()
     model = SoMoFormer(SoMoFormerConfig.release()).eval()
-    model.load_state_dict(from_release(state))
+    model.load_state_dict(from_release(state, MEAN, DEVIATION))
     y_up = 0.5 * torch.randn(16, 2, 13, 3, generator=torch.Generator().manual_seed(1))
     ours = model(y_up[None][..., [2, 0, 1]], torch.ones(1, 16, 2, 13, dtype=torch.bool))[-1][0]
     torch.testing.assert_close(ours[..., [1, 2, 0]], as_the_authors_compute(state, y_up), atol=1e-4, rtol=0)
@@ -254,6 +255,6 @@ def test_weights_of_the_authors_answer_as_in_their_world() -> None:
 def test_a_state_of_another_model_is_refused() -> None:
     state = authors_state()
     with pytest.raises(InputError, match=r"fc_out\.weight"):
-        from_release({name: value for name, value in state.items() if name != "fc_out.weight"})
+        from_release({name: value for name, value in state.items() if name != "fc_out.weight"}, MEAN, DEVIATION)
     with pytest.raises(InputError, match="60 coefficients"):
-        from_release(authors_state(frames=60))
+        from_release(authors_state(frames=60), MEAN, DEVIATION)

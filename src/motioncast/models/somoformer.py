@@ -50,18 +50,6 @@ FAR = -1e9
 RELEASE_EXTENT_M = 3.0
 """The release's grid ends at this distance from the origin."""
 
-RELEASE_MEAN = (
-    -7.1789e-2, 4.1777e-2, 2.0464e-2, 4.6075e-3, 6.3129e-4, 2.2184e-3, 2.2500e-3, 6.2809e-4, 1.6267e-4, 7.9969e-4,
-    7.8669e-4, 1.4957e-4, 5.4564e-5, 4.1828e-4, 3.6941e-4, 1.3337e-5, 2.7676e-5, 2.8088e-4, 2.1341e-4, -3.4786e-5,
-    5.6285e-6, 1.8702e-4, 1.1101e-4, -6.3937e-5, 4.1189e-6, 1.4035e-4, 4.3991e-5, -9.2744e-5, 4.7437e-7, 1.1380e-4,
-)  # fmt: skip
-RELEASE_DEVIATION = (
-    0.5954, 0.5319, 0.2537, 0.0897, 0.0567, 0.0498, 0.0459, 0.0383, 0.0321, 0.0262, 0.0189, 0.0091, 0.0072, 0.0085,
-    0.0073, 0.0042, 0.0036, 0.0050, 0.0039, 0.0027, 0.0022, 0.0036, 0.0024, 0.0025, 0.0017, 0.0029, 0.0016, 0.0024,
-    0.0015, 0.0026,
-)  # fmt: skip
-"""Statistics of the 30 coefficients that the release computes with; its checkpoints do not hold them."""
-
 
 @dataclass(frozen=True)
 class SoMoFormerConfig:
@@ -249,14 +237,16 @@ def shortened(rows: Tensor) -> Tensor:
     return rows / rows.norm(dim=-1, keepdim=True).clamp(min=1)
 
 
-def from_release(checkpoint: Mapping[str, Tensor]) -> dict[str, Tensor]:
+def from_release(checkpoint: Mapping[str, Tensor], mean: Tensor, deviation: Tensor) -> dict[str, Tensor]:
     """The state of this model, ``release`` preset, from that of the authors' model.
 
     Their world has y up and ours z: their (x, y, z) are our (y, z, x), a turn, since no weight knows a heading. So
     rows of the joint table and the two halves of the grid change places.
 
     Args:
-        checkpoint: The entry ``model`` of their file, in the SoMoF setting.
+        checkpoint: The entry ``model`` of their file.
+        mean: Mean of each coefficient; their code holds it, their checkpoints do not.
+        deviation: Spread of each coefficient, from the same place.
 
     Raises:
         InputError: If it is the state of another model.
@@ -266,9 +256,9 @@ def from_release(checkpoint: Mapping[str, Tensor]) -> dict[str, Tensor]:
 
             state = torch.load("checkpoint.pth.tar", map_location="cpu", weights_only=True)["model"]
             model = SoMoFormer(SoMoFormerConfig.release())
-            model.load_state_dict(from_release(state))
+            model.load_state_dict(from_release(state, mean, deviation))
     """
-    state = {"mean": torch.tensor(RELEASE_MEAN), "deviation": torch.tensor(RELEASE_DEVIATION)}
+    state = {"mean": mean, "deviation": deviation}
     try:
         joint = checkpoint["double_id_encoder.learned_encoding.weight"].unflatten(0, (-1, 3))
         state["joint.weight"] = joint[:, [2, 0, 1]].flatten(0, 1)
@@ -286,8 +276,10 @@ def from_release(checkpoint: Mapping[str, Tensor]) -> dict[str, Tensor]:
             'entry "model" of their file'
         ) from None
     frames = state["embed.weight"].shape[1]
-    if frames != len(RELEASE_MEAN):
-        raise InputError(f"the checkpoint reads {frames} coefficients; the release has statistics for 30 only")
+    if not frames == len(mean) == len(deviation):
+        raise InputError(
+            f"the checkpoint reads {frames} coefficients; {len(mean)} means and {len(deviation)} deviations came"
+        )
     return state
 
 

@@ -33,6 +33,7 @@ from torch import Tensor, nn
 from motioncast.core.skeletons import SKELETONS
 from motioncast.nn.frames import side_joints
 from motioncast.nn.gaps import fill_gaps
+from motioncast.nn.losses import mean_over
 
 POSE_WEIGHT = 0.1
 """Weight of the pose's loss beside the path's."""
@@ -197,11 +198,6 @@ class DeRPoF(nn.Module):
         spread = answer.log_variance.exp() + answer.mean.square() - 1 - answer.log_variance
         divergence = mean_over(spread.sum(-1) / 2, hips_seen.any(1))
         return path_loss + POSE_WEIGHT * (pose_loss + DIVERGENCE_WEIGHT * divergence)
-
-
-def mean_over(values: Tensor, mask: Tensor) -> Tensor:
-    """Mean of the values where the mask, of their shape, is set; zero if it is nowhere."""
-    return (values * mask).sum() / mask.sum().clamp(min=1)
 
 
 MODEL, CONFIG = DeRPoF, DeRPoFConfig

@@ -29,7 +29,7 @@ from torch import Tensor, nn
 
 from motioncast.core.skeletons import SKELETONS
 from motioncast.nn.dct import dct_matrix
-from motioncast.nn.frames import root_joints
+from motioncast.nn.frames import middle_of_people, root_joints
 from motioncast.nn.gaps import fill_gaps
 from motioncast.nn.losses import mean_distance
 
@@ -165,7 +165,7 @@ class EMPMP(nn.Module):
         with torch.autocast(history.device.type, enabled=False):
             seats = seating(present, self.config.people)
             there = seats.sum(-1)  # B, places: 1 where somebody sits
-            centred = (filled - middle_of_people(filled[:, -1], present)).flatten(3)
+            centred = (filled - middle_of_people(filled[:, -1], present)[:, None]).flatten(3)
             seated = (seats @ centred.transpose(1, 2).flatten(2)).unflatten(-1, (self.config.history, -1))
             path = filled[..., self.root, :].mean(-2).transpose(1, 2).flatten(2)
             seated_path = (seats @ path).unflatten(-1, (self.config.history, 3))
@@ -205,13 +205,6 @@ class EMPMP(nn.Module):
         """Mean distance of the joints plus mean distance of their steps from frame to frame."""
         both = observed[:, 1:] & observed[:, :-1]
         return mean_distance(answer, truth, observed) + mean_distance(answer.diff(dim=1), truth.diff(dim=1), both)
-
-
-def middle_of_people(pose: Tensor, present: Tensor) -> Tensor:
-    """Mean position of the people of one frame ``(B, P, J, 3)`` who are there, ``(B, 1, 1, 1, 3)``."""
-    there = present[..., None].float()
-    middle = (pose.mean(2) * there).sum(1) / there.sum(1).clamp(min=1)
-    return middle[:, None, None, None]
 
 
 def distances_between(path: Tensor) -> Tensor:

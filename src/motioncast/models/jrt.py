@@ -38,8 +38,9 @@ import torch
 from torch import Tensor, nn
 
 from motioncast.core.skeletons import SKELETONS
+from motioncast.nn.frames import middle_of_people
 from motioncast.nn.gaps import fill_gaps
-from motioncast.nn.losses import mean_distance
+from motioncast.nn.losses import mean_distance, mean_over
 
 FAR = -1e9
 """Attention score of a joint of somebody who is not there."""
@@ -228,12 +229,6 @@ def net(activation: type[nn.Module], *widths: int) -> nn.Sequential:
     return nn.Sequential(*layers[:-1])
 
 
-def middle_of_people(pose: Tensor, present: Tensor) -> Tensor:
-    """Mean position of the people of one frame ``(B, P, J, 3)`` who are there, ``(B, 1, 1, 3)``."""
-    there = present[..., None].float()
-    return ((pose.mean(2) * there).sum(1) / there.sum(1).clamp(min=1))[:, None, None]
-
-
 def steps_of(frames: Tensor) -> Tensor:
     """Steps from frame to frame along axis 1, the first one zero."""
     return torch.cat([torch.zeros_like(frames[:, :1]), frames[:, 1:] - frames[:, :-1]], 1)
@@ -249,11 +244,6 @@ def nearness(frames: Tensor) -> Tensor:
     """exp(-distance) of each pair of joints in every frame ``(B, T, P, J, 3)``, ``(B, T, N, N)``."""
     joints = frames.flatten(2, 3)
     return torch.exp(-(joints[:, :, :, None] - joints[:, :, None]).norm(dim=-1))
-
-
-def mean_over(values: Tensor, mask: Tensor) -> Tensor:
-    """Mean of the values where the mask, of their shape, is set; zero if it is nowhere."""
-    return (values * mask).sum() / mask.sum().clamp(min=1)
 
 
 MODEL, CONFIG = JRT, JRTConfig

@@ -34,6 +34,7 @@ from torch import Tensor, nn
 
 from motioncast.core.skeletons import SKELETONS
 from motioncast.nn.dct import dct_matrix, exact
+from motioncast.nn.frames import middle_of_people
 from motioncast.nn.gaps import fill_gaps
 
 FAR = -1e9
@@ -254,13 +255,6 @@ class MRT(nn.Module):
         later = (answer.diff(dim=1) - truth.diff(dim=1)).square().mean(-1)
         seen = torch.cat([observed[:, :1], observed[:, 1:] & observed[:, :-1]], 1)
         return (torch.cat([first, later], 1) * seen).sum() / seen.sum().clamp(min=1)
-
-
-def middle_of_people(pose: Tensor, present: Tensor) -> Tensor:
-    """Mean position of the people of one frame ``(B, P, J, 3)`` who are there, ``(B, 1, 1, 3)``."""
-    there = present[..., None].float()
-    middle = (pose.mean(2) * there).sum(1) / there.sum(1).clamp(min=1)
-    return middle[:, None, None]
 
 
 def nearness(frames: Tensor) -> Tensor:

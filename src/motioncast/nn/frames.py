@@ -60,3 +60,10 @@ def to_own(motion: Tensor, origin: Tensor, heading: Tensor) -> Tensor:
 def to_world(own: Tensor, origin: Tensor, heading: Tensor) -> Tensor:
     """The inverse of ``to_own``."""
     return turn(own, heading[:, None, :, None]) + origin[:, None, :, None]
+
+
+def middle_of_people(pose: Tensor, present: Tensor) -> Tensor:
+    """Mean position of the people of one frame ``(B, P, J, 3)`` who are there, ``(B, 1, 1, 3)``."""
+    there = present[..., None].float()
+    middle = (pose.mean(2) * there).sum(1) / there.sum(1).clamp(min=1)
+    return middle[:, None, None]

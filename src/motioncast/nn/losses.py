@@ -38,3 +38,8 @@ def with_true_lengths(answer: Tensor, truth: Tensor, bones: Sequence[tuple[int, 
         true = (truth[..., joint, :] - truth[..., parent, :]).norm(dim=-1, keepdim=True)
         joints[joint] = joints[parent] + bone * true / (bone.square().sum(-1, keepdim=True) + 1e-6).sqrt()
     return torch.stack(joints, -2)
+
+
+def mean_over(values: Tensor, mask: Tensor) -> Tensor:
+    """Mean of the values where the mask, of their shape, is set; zero if it is nowhere."""
+    return (values * mask).sum() / mask.sum().clamp(min=1)

@@ -60,6 +60,7 @@ def resample(scene: Scene, fps: float) -> Scene:
         observed=scene.observed[before] & scene.observed[after],
         rotations=rotations,
         fps=fps,
+        objects=tuple(thing[np.round(times).astype(int)] for thing in scene.objects),
     )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from motioncast.core.scene_object import SceneObject
 from motioncast.core.skeleton import Skeleton
 from motioncast.errors import SceneError
 
@@ -26,6 +27,8 @@ class Scene:
         offsets: Rest offset of each joint from its parent, ``(people, joints, 3)``, where rotations are known.
         source: Where the motion comes from.
         remarks: What the reader inferred or mended, one sentence each; said aloud to the user.
+        objects: What stands or moves around the people.
+        floor_m: Height of the floor, where it is known.
 
     Raises:
         SceneError: If shapes disagree, or an observed position is not finite.
@@ -46,6 +49,8 @@ class Scene:
     offsets: np.ndarray | None = None
     source: str = ""
     remarks: tuple[str, ...] = ()
+    objects: tuple[SceneObject, ...] = ()
+    floor_m: float | None = None
 
     def __post_init__(self) -> None:
         with np.errstate(over="ignore"):  # what float32 cannot hold becomes infinite and is refused below
@@ -72,6 +77,12 @@ class Scene:
         ):
             if given is not None and given.shape != wanted:
                 raise SceneError(f"the {name} have shape {given.shape}; expected {wanted}")
+        for thing in self.objects:
+            if thing.frames not in (None, len(positions)):
+                raise SceneError(
+                    f'object "{thing.name}" moves for {thing.frames} frames and the people for {len(positions)}; '
+                    "give it a place a frame, or one place"
+                )
         people = self.people or tuple(f"person {number + 1}" for number in range(positions.shape[1]))
         if len(people) != positions.shape[1] or len(set(people)) != len(people):
             raise SceneError(f"{len(people)} ids came for {positions.shape[1]} people; give each its own")
@@ -94,7 +105,13 @@ class Scene:
     def __getitem__(self, frames: slice) -> Scene:
         """The same scene with only these frames."""
         rotations = None if self.rotations is None else self.rotations[frames]
-        return replace(self, positions=self.positions[frames], observed=self.observed[frames], rotations=rotations)
+        return replace(
+            self,
+            positions=self.positions[frames],
+            observed=self.observed[frames],
+            rotations=rotations,
+            objects=tuple(thing[frames] for thing in self.objects),
+        )
 
     def select(self, people: Sequence[str]) -> Scene:
         """The same scene with only these people, in this order.
@@ -173,4 +190,6 @@ def join(scenes: Sequence[Scene]) -> Scene:
         np.concatenate(offsets) if whole else None,
         ", ".join(dict.fromkeys(scene.source for scene in scenes)),
         tuple(dict.fromkeys(remark for scene in scenes for remark in scene.remarks)),
+        tuple(thing for scene in scenes for thing in scene.objects),
+        next((scene.floor_m for scene in scenes if scene.floor_m is not None), None),
     )

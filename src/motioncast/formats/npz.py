@@ -1,6 +1,7 @@
 """Scene and forecast files of our own: plain NumPy arrays and one JSON text named ``meta``.
 
-    motioncast.scene/1      positions, observed; rotations and offsets where known
+    motioncast.scene/1      positions, observed; rotations and offsets where known; of object N, from 0 on,
+                            object_N_position and object_N_rotation, and object_N_size or object_N_points and _faces
     motioncast.forecast/1   samples, weights, carried, guessed, radius_LEVEL; the history (and the truth, where it
                             came) as a scene whose arrays have the prefix ``history_`` (``truth_``)
 
@@ -10,7 +11,7 @@ Metres, seconds, z up. ``numpy.load`` reads them without this package; nothing i
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ import numpy as np
 from motioncast.core.card import ModelCard
 from motioncast.core.forecast import Forecast
 from motioncast.core.scene import Scene
+from motioncast.core.scene_object import SceneObject
 from motioncast.core.skeleton import Skeleton
 from motioncast.core.skeletons import recognise
 from motioncast.errors import FormatError, InputError
@@ -151,6 +153,11 @@ def _packed(scene: Scene, prefix: str) -> tuple[dict[str, np.ndarray], dict[str,
     if scene.rotations is not None and scene.offsets is not None:
         arrays[f"{prefix}rotations"] = np.asarray(scene.rotations, np.float32)
         arrays[f"{prefix}offsets"] = np.asarray(scene.offsets, np.float32)
+    for number, thing in enumerate(scene.objects):
+        parts = {"position": thing.position, "rotation": thing.rotation, "points": thing.points, "faces": thing.faces}
+        if thing.points is None:
+            parts["size"] = thing.size
+        arrays |= {f"{prefix}object_{number}_{part}": array for part, array in parts.items() if array is not None}
     skeleton = scene.skeleton
     meta = {
         "fps": scene.fps, "people": list(scene.people), "source": scene.source, "remarks": list(scene.remarks),
@@ -159,7 +166,34 @@ def _packed(scene: Scene, prefix: str) -> tuple[dict[str, np.ndarray], dict[str,
             "landmarks": list(skeleton.landmarks), "label": skeleton.label,
         },
     }  # fmt: skip
+    if scene.objects:
+        meta["objects"] = [
+            {"name": thing.name, "category": thing.category, "shape": thing.shape, "role": thing.role}
+            for thing in scene.objects
+        ]
+    if scene.floor_m is not None:
+        meta["floor_m"] = float(scene.floor_m)
     return arrays, meta
+
+
+def _objects(
+    path: str | Path, arrays: Mapping[str, np.ndarray], meta: Mapping[str, Any], prefix: str
+) -> Iterator[SceneObject]:
+    for number, about in enumerate(_entry(path, meta, "objects", list) if "objects" in meta else ()):
+        if not isinstance(about, dict):
+            raise FormatError(path, f'object {number} of "meta" is {about!r:.40}; expected a dict')
+        kept = f"{prefix}object_{number}_"
+        parts: dict[str, np.ndarray] = {}
+        for part, shape, kind in (
+            ("position", (3,), "f"), ("rotation", (4,), "f"), ("size", (3,), "f"), ("points", (None, 3), "f"),
+            ("faces", (None, 3), "i"),
+        ):  # fmt: skip
+            array = arrays.get(f"{kept}{part}")
+            if array is not None:
+                moving = part in ("position", "rotation") and array.ndim == 2
+                parts[part] = _array(path, arrays, f"{kept}{part}", (None, *shape) if moving else shape, kind)
+        texts = [_entry(path, about, entry, str) for entry in ("name", "category", "shape", "role")]
+        yield SceneObject(*texts[:3], role=texts[3], **parts)
 
 
 def _scene(
@@ -194,6 +228,8 @@ def _scene(
             _array(path, arrays, f"{prefix}offsets", (people, len(names), 3), "f") if turned else None,
             _entry(path, meta, "source", str),
             tuple(_strings(path, meta, "remarks")),
+            tuple(_objects(path, arrays, meta, prefix)),
+            _entry(path, meta, "floor_m", float) if "floor_m" in meta else None,
         )
     except FormatError:
         raise

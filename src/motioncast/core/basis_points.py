@@ -1,8 +1,8 @@
 """Basis point sets: an object as its distances to fixed points around the person who sees it.
 
 Mueller, Tanke, Gall, "Massively Multi-Person 3D Human Motion Forecasting with Scene Context" (2024), Sec. 3.1;
-Prokudin, Lassner, Romero, "Efficient Learning on Point Clouds with Basis Point Sets" (2019). The points are fixed in the
-person's own frame and the object is brought there, so one object has another code for everybody who sees it. Distances
+Prokudin, Lassner, Romero, "Efficient Learning on Point Clouds with Basis Point Sets" (2019). The points are fixed in
+the person's own frame and the object is brought there, so one object has another code for everybody who sees it. Distances
 are exact instead of to sampled surface points.
 """
 

@@ -2,8 +2,8 @@
 
 Mueller, Tanke, Gall, "Massively Multi-Person 3D Human Motion Forecasting with Scene Context" (2024), Sec. 3.1;
 Prokudin, Lassner, Romero, "Efficient Learning on Point Clouds with Basis Point Sets" (2019). The points are fixed in
-the person's own frame and the object is brought there, so one object has another code for everybody who sees it. Distances
-are exact instead of to sampled surface points.
+the person's own frame and the object is brought there, so one object has another code for everybody who sees it.
+Distances are exact instead of to sampled surface points.
 """
 
 from __future__ import annotations

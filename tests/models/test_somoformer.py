@@ -258,3 +258,23 @@ def test_a_state_of_another_model_is_refused() -> None:
         from_release({name: value for name, value in state.items() if name != "fc_out.weight"}, MEAN, DEVIATION)
     with pytest.raises(InputError, match="60 coefficients"):
         from_release(authors_state(frames=60), MEAN, DEVIATION)
+
+
+def test_the_baseline_knows_neither_joint_nor_person_nor_place() -> None:
+    torch.manual_seed(0)
+    baseline = SoMoFormer(SoMoFormerConfig(**{**SMALL, "grid_width": 0}, embeddings=False)).eval()
+    history, observed = scene()
+    answer = baseline(history, observed)[-1]
+    order = [2, 0, 1]
+    torch.testing.assert_close(baseline(history[:, :, order], observed)[-1], answer[:, :, order], atol=1e-5, rtol=0)
+    # farther apart, all is as it was but for the place
+    apart = torch.arange(3.0)[:, None, None].expand(3, 1, 3)
+    torch.testing.assert_close(baseline(history + apart, observed)[-1], answer + apart, atol=1e-5, rtol=0)
+
+
+def test_people_who_keep_their_order_train_only_the_first_rows() -> None:
+    training = SoMoFormer(SoMoFormerConfig(permuted=False, **SMALL)).train()
+    training(*scene())[-1].sum().backward()
+    gradient = training.person.weight.grad
+    assert gradient is not None
+    assert (gradient.abs().sum(1) > 0).tolist() == [True] * 3 + [False] * 13

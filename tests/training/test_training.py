@@ -80,9 +80,9 @@ def agree(recipe: Recipe, run: Path) -> None:
     """The exported graph of a run answers as its torch model does."""
     from motioncast.inference.registry import load
     from motioncast.models import build
-    from motioncast.training.loop import final
     from motioncast.training.ship import ship
     from motioncast.training.weights import load_weights
+    from motioncast.training.windows_task import final
 
     card = ship(run)
     assert card.parameters > 0
@@ -121,6 +121,15 @@ def test_batches_are_seeded_and_finite(data: Path) -> None:
     np.testing.assert_array_equal(draws[0].positions, draws[1].positions)
     assert np.isfinite(draws[0].positions).all()
     assert draws[0].positions.shape[1:] == (60, draws[0].positions.shape[2], 15, 3)
+
+
+def test_a_fixed_number_of_scenes_is_drawn_once_and_seen_again(data: Path) -> None:
+    recipe = replace(RECIPE, scenes=3 * RECIPE.batch, seed=4)
+    batches = sampler(data, recipe).batches(np.random.default_rng(0))
+    seen = {next(batches).seen.tobytes() for _ in range(40)}
+    assert len(seen) == 3
+    other = sampler(data, recipe).batches(np.random.default_rng(1))
+    assert {next(other).seen.tobytes() for _ in range(40)} == seen
 
 
 def test_mirroring_swaps_sides_and_reversal_keeps_bones(data: Path) -> None:

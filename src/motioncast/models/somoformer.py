@@ -65,7 +65,9 @@ class SoMoFormerConfig:
         layers: Encoder layers.
         heads: Attention heads.
         feed_forward: Hidden channels of the feed-forward nets.
-        grid_width: Channels of the grid embedding.
+        embeddings: Whether learned embeddings tell joint and person; without them a model is the baseline of Table 3.
+        permuted: Whether in training any row of the person table may stand for a person.
+        grid_width: Channels of the grid embedding; 0: no grid.
         cells: Grid cells along each axis.
         extent_m: The grid reaches this far from the middle of the people on either side.
         people: Rows of the person table: most people in a scene.
@@ -84,6 +86,8 @@ class SoMoFormerConfig:
     layers: int = 6
     heads: int = 8
     feed_forward: int = 1024
+    embeddings: bool = True
+    permuted: bool = True
     grid_width: int = 8
     cells: int = 5
     extent_m: float = 5.0
@@ -124,8 +128,9 @@ class SoMoFormer(nn.Module):
         self.embed = nn.Linear(frames, content)
         rows = content // 2 if released else content
         self.repeats = 3 if config.joint_rows == "joint" else 1
-        self.joint = nn.Embedding(3 * self.joints // self.repeats, rows)
-        self.person = nn.Embedding(config.people, rows)
+        if config.embeddings:
+            self.joint = nn.Embedding(3 * self.joints // self.repeats, rows)
+            self.person = nn.Embedding(config.people, rows)
         self.grid = nn.Embedding(2 * config.cells if released else config.cells**2, config.grid_width)
         self.layers = nn.ModuleList(
             EncoderLayer(config.width, config.heads, config.feed_forward, config.dropout) for _ in range(config.layers)
@@ -187,18 +192,22 @@ class SoMoFormer(nn.Module):
         """Embedded tokens, ``(B, 3 P J, d)``."""
         batch, people = coefficients.shape[:2]
         content = self.embed(coefficients).flatten(2, 3)  # B, P, 3 J, d - g
-        joint = self.joint.weight.repeat_interleave(self.repeats, 0)[None, None]
-        # in training every row of the table gets to stand for somebody (Sec. 3.7: empty slots are permuted too)
-        rows = torch.randperm(self.config.people)[:people] if self.training else slice(people)
-        person = self.person.weight[rows][None, :, None]
-        if self.config.preset == "release":
-            joint, person = shortened(joint), shortened(person)
-            both = torch.stack([joint.expand(1, people, -1, -1), person.expand(-1, -1, 3 * self.joints, -1)], -1)
-            content = content + both.flatten(3)
-        else:
-            content = content + joint + person
+        if self.config.embeddings:
+            content = content + self.identity(people)
         cell = self.cell(neck, present)[:, :, None].expand(-1, -1, 3 * self.joints, -1)
         return torch.cat([content, cell], -1).view(batch, people * 3 * self.joints, self.config.width)
+
+    def identity(self, people: int) -> Tensor:
+        """What is added to tell joint and person, ``(1, P, 3 J, d - g)`` (Sec. 3.3)."""
+        joint = self.joint.weight.repeat_interleave(self.repeats, 0)[None, None]
+        # in training every row of the table gets to stand for somebody (Sec. 3.7: empty slots are permuted too)
+        permuted = self.training and self.config.permuted
+        rows = torch.randperm(self.config.people)[:people] if permuted else slice(people)
+        person = self.person.weight[rows][None, :, None]
+        if self.config.preset == "paper":
+            return joint + person
+        joint, person = shortened(joint), shortened(person)
+        return torch.stack([joint.expand(1, people, -1, -1), person.expand(-1, -1, 3 * self.joints, -1)], -1).flatten(3)
 
     def cell(self, neck: Tensor, present: Tensor) -> Tensor:
         """Grid embedding of where each person's neck stands, ``(B, P, g)`` (Sec. 3.4)."""

@@ -59,13 +59,19 @@ class Sampler:
         return int(np.ceil((self.length - 1) * self.step * self.recipe.speed[0])) + 2
 
     def batches(self, random: np.random.Generator) -> Iterator[Batch]:
-        """Batches without end."""
+        """Batches without end; of a recipe with a fixed number of scenes the same ones in random order."""
+        once = np.random.default_rng(self.recipe.seed)
+        fixed = [self.batch(once) for _ in range(self.recipe.scenes // self.recipe.batch)]
         while True:
-            people = int(random.choice(self.recipe.people))
-            scenes = [self.scene(people, random) for _ in range(self.recipe.batch)]
-            positions = np.stack([scene for scene, _ in scenes]).astype(np.float32)
-            observed = np.stack([mask for _, mask in scenes])
-            yield self.worsened(positions, observed, random)
+            yield fixed[random.integers(len(fixed))] if fixed else self.batch(random)
+
+    def batch(self, random: np.random.Generator) -> Batch:
+        """A batch of new scenes."""
+        people = int(random.choice(self.recipe.people))
+        scenes = [self.scene(people, random) for _ in range(self.recipe.batch)]
+        positions = np.stack([scene for scene, _ in scenes]).astype(np.float32)
+        observed = np.stack([mask for _, mask in scenes])
+        return self.worsened(positions, observed, random)
 
     def scene(self, people: int, random: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
         """One scene of so many people, and its mask."""

@@ -38,6 +38,7 @@ class Recipe:
         late: Share of people who enter the scene within the first half of the history.
         drop: Share of joints of the history that are not seen.
         noise_m: Standard deviation of the noise on seen positions.
+        scenes: If above 0, so many scenes are drawn once and seen again and again; else each is a new one.
         validate_every: Steps between two looks at the validation takes.
         start: Weights to begin from (a run's ``best.pt``); empty: from scratch.
         folds: If above 0, the run serves error radii: train and validation takes are split into so many parts by
@@ -67,6 +68,7 @@ class Recipe:
     late: float = 0.1
     drop: float = 0.02
     noise_m: float = 0.002
+    scenes: int = 0
     validate_every: int = 500
     seed: int = 0
     start: str = ""

@@ -18,7 +18,7 @@ from motioncast.datasets.mixer import turned  # noqa: E402
 from motioncast.inference.registry import load  # noqa: E402
 from motioncast.models.somoformer import SoMoFormer, SoMoFormerConfig  # noqa: E402
 from motioncast.testing import walkers  # noqa: E402
-from motioncast.training import loop  # noqa: E402
+from motioncast.training import loop, windows_task  # noqa: E402
 from motioncast.training.batches import Sampler  # noqa: E402
 from motioncast.training.recipe import Recipe  # noqa: E402
 from motioncast.training.ship import ship  # noqa: E402
@@ -55,7 +55,7 @@ def test_fault_03_the_test_chooses_the_model(data: Path, monkeypatch: pytest.Mon
 
         monkeypatch.setattr(open_cmu, name, noted)
     for folds in (0, 2):
-        loop.training_takes(replace(RECIPE, folds=folds), data, MRT15)
+        windows_task.training_takes(replace(RECIPE, folds=folds), data, MRT15)
     assert asked.count("train") >= 2
     assert "test" not in asked
 

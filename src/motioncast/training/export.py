@@ -18,7 +18,7 @@ from onnx import numpy_helper
 from torch import Tensor, nn
 
 from motioncast.core.card import ModelCard
-from motioncast.training.loop import final
+from motioncast.training.windows_task import final
 
 SMALLEST_HALVED = 64
 """Tensors with fewer numbers keep float32: they are constants of the mathematics, not weights."""

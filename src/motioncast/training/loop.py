@@ -11,7 +11,7 @@ import copy
 import json
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -21,17 +21,11 @@ import torch
 from lightning_fabric import Fabric
 from torch import Tensor, nn
 
-from motioncast.benchmarks import open_cmu
-from motioncast.core.scene import Scene
-from motioncast.core.skeleton import Skeleton
-from motioncast.core.skeletons import SKELETONS
-from motioncast.datasets.windows import Windows, cut
 from motioncast.errors import InputError
-from motioncast.metrics.position import mpjpe_at
 from motioncast.models import build
-from motioncast.training.batches import STORED_FPS, Sampler
 from motioncast.training.recipe import Recipe, read_run
 from motioncast.training.weights import load_weights
+from motioncast.training.windows_task import WindowsTask
 
 
 def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = print) -> Path:
@@ -54,15 +48,9 @@ def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = pr
     fabric.launch()
     fabric.seed_everything(recipe.seed + fabric.global_rank, verbose=False)
     raw = build(recipe.model, recipe.sizes)
-    config = raw.config
-    skeleton = SKELETONS[config.skeleton]
-
-    sampler = Sampler(*training_takes(recipe, data, skeleton), recipe, config.history, config.horizon, config.fps)
-    checks = validation(data, skeleton, config.history, config.horizon, config.fps, recipe.people)
-    if hasattr(raw, "fit_statistics"):
-        raw.fit_statistics(torch.from_numpy(_whole_windows(sampler, recipe, config.history)))
+    task = WindowsTask(recipe, raw, data)
     if hasattr(raw, "fit"):
-        return _solve(recipe, raw, sampler, checks, out, say)
+        return _solve(recipe, raw, task, out, say)
     if recipe.start:
         load_weights(raw, Path(recipe.start)).train()
     optimiser = torch.optim.AdamW(raw.parameters(), recipe.learning_rate, weight_decay=recipe.weight_decay)
@@ -80,17 +68,17 @@ def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = pr
     (out / "recipe.json").write_text(json.dumps(asdict(recipe), indent=1), encoding="utf-8")
     model, optimiser = fabric.setup(raw, optimiser)
     mean = fabric.to_device(mean)
-    batches = sampler.batches(np.random.default_rng([recipe.seed, start, fabric.global_rank]))
+    batches = task.batches(np.random.default_rng([recipe.seed, start, fabric.global_rank]))
     began, losses = time.perf_counter(), []
+
+    def place(array: np.ndarray) -> Tensor:
+        return fabric.to_device(torch.from_numpy(array))
+
     for step in range(start + 1, recipe.steps + 1):
         batch = next(batches)
         for group in optimiser.param_groups:
             group["lr"] = recipe.learning_rate * pace(step, recipe)
-        seen, observed, truth = (
-            fabric.to_device(torch.from_numpy(array)) for array in (batch.seen, batch.observed, batch.positions)
-        )
-        h = config.history
-        loss = raw.loss(model(seen, observed[:, :h]), truth[:, h:], observed[:, h:])
+        loss = task.loss(model, batch, place)
         fabric.backward(loss)
         fabric.clip_gradients(model, optimiser, max_norm=1.0)
         optimiser.step()
@@ -98,7 +86,7 @@ def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = pr
         follow(mean, raw, min(recipe.average, step / (step + 10)))
         losses.append(loss.item())
         if step % recipe.validate_every == 0 or step == recipe.steps:
-            scores = {name: ratio(mean, windows, config.fps) for name, windows in checks.items()}
+            scores = task.scores(mean)
             score = float(np.mean(list(scores.values())))
             total = spent + time.perf_counter() - began
             loss_now = float(np.mean(losses))
@@ -124,21 +112,14 @@ def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = pr
     return out / "best.pt"
 
 
-def _solve(
-    recipe: Recipe,
-    model: Any,
-    sampler: Sampler,
-    checks: dict[str, Windows],
-    out: Path,
-    say: Callable[[str], None],
-) -> Path:
+def _solve(recipe: Recipe, model: Any, task: WindowsTask, out: Path, say: Callable[[str], None]) -> Path:
     """Fit a model that has a closed solution to as many scenes as a recipe has steps and scenes a step."""
     began, config, random = time.perf_counter(), model.config, np.random.default_rng(recipe.seed)
     people = max(recipe.people)
-    scenes = [sampler.scene(people, random)[0] for _ in range(recipe.steps * recipe.batch)]
+    scenes = [task.sampler.scene(people, random)[0] for _ in range(recipe.steps * recipe.batch)]
     positions = torch.from_numpy(np.stack(scenes).astype(np.float32))
     model.fit(positions[:, : config.history], positions[:, config.history :])
-    scores = {name: ratio(model, windows, config.fps) for name, windows in checks.items()}
+    scores = task.scores(model)
     entry = {
         "step": recipe.steps, "validation": scores, "score": float(np.mean(list(scores.values()))),
         "seconds": time.perf_counter() - began, "device": f"{torch.get_num_threads()} CPU threads",
@@ -148,13 +129,6 @@ def _solve(
     _save({name: value.half() for name, value in model.state_dict().items()}, out / "best.pt")
     say(f"{recipe.name} {json.dumps(entry)}")
     return out / "best.pt"
-
-
-def _whole_windows(sampler: Sampler, recipe: Recipe, history: int) -> np.ndarray:
-    """Histories of some training batches in which everything was seen, one person each."""
-    random = np.random.default_rng(recipe.seed)
-    windows = [window[:history] for window, mask in (sampler.window(1, random) for _ in range(1000)) if mask.all()]
-    return np.stack(windows).astype(np.float32)
 
 
 def _same_recipe(recipe: Recipe, out: Path) -> None:
@@ -195,56 +169,3 @@ def follow(mean: nn.Module, model: nn.Module, decay: float) -> None:
         average.lerp_(value, 1 - decay)
     for average, value in zip(mean.buffers(), model.buffers(), strict=True):
         average.copy_(value)
-
-
-def training_takes(recipe: Recipe, data: Path, skeleton: Skeleton) -> tuple[list[Scene], list[Scene]]:
-    """Takes of single people and of the couple that a recipe trains on."""
-    if not recipe.folds:
-        return (
-            open_cmu.single_scenes(data, "train", STORED_FPS, skeleton),
-            open_cmu.couple_scenes(data, "train", STORED_FPS, skeleton),
-        )
-    singles, couples = open_cmu.all_but_test(data, STORED_FPS, skeleton)
-    kept = [open_cmu.fold_of(scene, recipe.folds) != recipe.fold for scene in (*singles, *couples)]
-    return (
-        [scene for scene, keep in zip(singles, kept, strict=False) if keep],
-        [scene for scene, keep in zip(couples, kept[len(singles) :], strict=True) if keep],
-    )
-
-
-def validation(
-    data: Path, skeleton: Skeleton, history: int, horizon: int, fps: float, people: Sequence[int] = (2, 3)
-) -> dict[str, Windows]:
-    """The windows on which a model is chosen: the couple and composed scenes of three, or single people.
-
-    A model of single people is chosen on single people; its takes start so that "now" is a captured frame.
-    """
-    singles = open_cmu.single_scenes(data, "validation", fps, skeleton)
-    if max(people) == 1:
-        return {"single": cut(singles, history, horizon, first=(1 - history) % 5)}
-    couples = open_cmu.couple_scenes(data, "validation", fps, skeleton)
-    return {
-        "couple": cut(couples, history, horizon),
-        "crowd": open_cmu.crowd(singles, couples, history, horizon),
-    }
-
-
-@torch.no_grad()
-def ratio(model: nn.Module, windows: Windows, fps: float) -> float:
-    """Mean error at three moments (1, 2, 3 s, or the thirds of a shorter horizon) over that of standing still."""
-    device = next(model.parameters()).device
-    answers = []
-    for start in range(0, len(windows), 100):
-        positions, observed = (torch.from_numpy(array[start : start + 100]).to(device) for array in windows.past)
-        answers.append(final(model(positions, observed)).float().cpu().numpy())
-    truth, mask = windows.future
-    horizon = truth.shape[1]
-    moments = [round(horizon * third / 3) - 1 for third in (1, 2, 3)]
-    still = np.broadcast_to(windows.past[0][:, -1:], truth.shape)
-    errors = [mpjpe_at(forecast, truth, mask)[moments].mean() for forecast in (np.concatenate(answers), still)]
-    return float(errors[0] / errors[1])
-
-
-def final(answer: Tensor | list[Tensor]) -> Tensor:
-    """The forecast of the last layer, where a model answers after every layer."""
-    return answer[-1] if isinstance(answer, list) else answer

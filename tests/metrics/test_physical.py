@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from motioncast.metrics.physical import bone_length_drift, foot_skating, mean_jerk, seam_jump
+from motioncast.metrics.physical import bone_length_drift, foot_skating, mean_jerk, seam_jump, velocity_change
 
 BONES = [(1, 0), (2, 1), (3, 0)]
 
@@ -93,6 +93,16 @@ def test_naive_twin_of_the_seam_jump(motion: np.ndarray, observed: np.ndarray) -
         assert seam_jump(history, forecast, 25, observed[:, :, :5])[index] == pytest.approx(np.mean(jumps))
 
 
+def test_the_seam_is_one_of_the_moments_of_a_motion(motion: np.ndarray, observed: np.ndarray) -> None:
+    changes = velocity_change(motion, 25, observed)
+    assert changes.shape == (2, 3, 7)
+    for cut in range(2, 9):
+        seen = np.where(np.arange(9)[:, None] == cut, True, observed)  # a forecast is always there
+        jump = seam_jump(motion[:, :, :cut], motion[:, :, cut:], 25, seen[:, :, :cut])
+        whole = observed[:, :, cut - 2 : cut + 1].all((2, 3))
+        np.testing.assert_allclose(jump[whole], changes[..., cut - 2][whole])
+
+
 def test_motion_that_goes_on_steadily_has_no_seam_and_a_held_pose_has_that_of_its_speed() -> None:
     walk = np.arange(6)[:, None, None] * [0.04, 0.03, 0]
     assert seam_jump(walk[:3], walk[3:], 25) == pytest.approx(0, abs=1e-12)
@@ -103,6 +113,7 @@ METRICS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "skating": lambda motion: foot_skating(motion, [1, 3], [0.0, 0.0], 25),
     "bones": lambda motion: bone_length_drift(motion, motion[..., 0, :, :], BONES),
     "jerk": lambda motion: mean_jerk(motion, 25),
+    "changes": lambda motion: velocity_change(motion, 25),
     "seam": lambda motion: seam_jump(motion[..., :4, :, :], motion[..., 4:, :, :], 25),
 }
 

@@ -102,10 +102,28 @@ def seam_jump(history: np.ndarray, forecast: np.ndarray, fps: float, observed: n
         >>> [float(seam_jump(steady[:2], there, fps=10).round(6)) for there in (steady[2:], steady[1:2])]
         [0.0, 1.0]
     """
-    last = np.asarray(history, np.float64)[..., -2:, :, :]
-    before, after = last[..., 1, :, :] - last[..., 0, :, :], forecast[..., 0, :, :] - last[..., 1, :, :]
-    seen = None if observed is None else np.all(observed[..., -2:, :], -2)
-    return seen_mean(np.linalg.norm(after - before, axis=-1) * fps, seen, -1)
+    around = np.concatenate([history[..., -2:, :, :], forecast[..., :1, :, :]], -3)
+    seen = None if observed is None else np.concatenate([observed[..., -2:, :], observed[..., -1:, :]], -2)
+    return velocity_change(around, fps, seen)[..., 0]
+
+
+def velocity_change(motion: np.ndarray, fps: float, observed: np.ndarray | None = None) -> np.ndarray:
+    """Change of velocity from each step to the next, mean over joints, ``(..., time - 2)`` metres a second.
+
+    Of real motion it is what a seam is to be compared with: the mean at the seam over the mean at every moment.
+
+    Args:
+        motion: ``(..., time, joints, 3)`` metres.
+        fps: Frames a second.
+        observed: ``(..., time, joints)``; three frames in a row must be seen. Default: all.
+
+    Example:
+        >>> start = np.array([0.0, 0.0, 0.1, 0.2]).reshape(4, 1, 1) * [1, 0, 0]
+        >>> velocity_change(start, fps=10).round(6)
+        array([1., 0.])
+    """
+    changes = np.linalg.norm(np.diff(np.asarray(motion, np.float64), 2, axis=-3), axis=-1) * fps
+    return seen_mean(changes, None if observed is None else _runs(observed, 3), -1)
 
 
 def _runs(observed: np.ndarray, length: int) -> np.ndarray:

@@ -15,6 +15,7 @@ import numpy as np
 
 from motioncast.core.scene_object import CATEGORIES, SceneObject
 from motioncast.core.shapes import surface_distance
+from motioncast.core.skeleton import Skeleton
 
 POINTS = 2048
 WIDTH = POINTS + len(CATEGORIES)
@@ -37,6 +38,30 @@ def basis_points() -> np.ndarray:
     points = drawn.round(3).astype(np.float32)
     points.setflags(write=False)
     return points
+
+
+def hip_frame(pose: np.ndarray, skeleton: Skeleton) -> tuple[np.ndarray, np.ndarray]:
+    """The frame from which people see objects: the middle of the hips on the floor, x towards the right hip.
+
+    Args:
+        pose: ``(..., joints, 3)`` metres, floor at height 0.
+        skeleton: Which joint is which.
+
+    Returns:
+        Its origin ``(..., 3)`` and the direction of its x axis ``(..., 2)``, for :func:`codes`.
+
+    Example:
+        >>> from motioncast.core.skeletons import MRT15
+        >>> pose = np.zeros((15, 3))
+        >>> pose[MRT15.index("left_hip")], pose[MRT15.index("right_hip")] = (1, 0, 0.9), (1, 0.2, 0.9)
+        >>> [part.round(3).tolist() for part in hip_frame(pose, MRT15)]
+        [[1.0, 0.1, 0.0], [0.0, 1.0]]
+    """
+    left, right = (pose[..., skeleton.index(f"{side}_hip"), :2] for side in ("left", "right"))
+    across, middle = right - left, (left + right) / 2
+    length = np.linalg.norm(across, axis=-1, keepdims=True)
+    origin = np.concatenate([middle, np.zeros_like(length)], -1)
+    return origin, np.where(length > 1e-3, across / np.maximum(length, 1e-3), [1.0, 0.0])
 
 
 def codes(objects: Sequence[SceneObject], origin: np.ndarray, across: np.ndarray, frame: int = -1) -> np.ndarray:

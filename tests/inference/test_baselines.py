@@ -32,6 +32,22 @@ def test_definitions_at_their_own_rate() -> None:
             np.testing.assert_allclose(ask(name, scene)[frame], positions, atol=1e-4, err_msg=name)
 
 
+def test_a_replay_runs_back_to_the_first_pose_it_knows_and_forward_again() -> None:
+    scene = walkers(frames=20)
+    answer, past = ask("replay", scene), scene.positions
+    for frame, then in [(1, -2), (7, -8), (14, -15), (15, -14), (27, -2), (28, -1), (29, -2)]:
+        np.testing.assert_allclose(answer[frame - 1], past[then], atol=1e-5)
+
+
+def test_a_replay_knows_of_no_moment_before_somebody_came() -> None:
+    scene = walkers(people=2, frames=20)
+    late = scene.observed.copy()
+    late[:-3, 1] = False
+    answer = ask("replay", Scene(scene.positions, MRT15, 15, late))
+    for frame, then in [(1, -2), (2, -3), (3, -2), (4, -1), (5, -2)]:
+        np.testing.assert_allclose(answer[frame - 1, 1], scene.positions[then, 1], atol=1e-5)
+
+
 def test_a_skeleton_without_pelvis_moves_by_its_hips() -> None:
     scene = walkers(frames=20).on(SOMOF13)
     hips = scene.positions[:, :, :2].mean(2)

@@ -23,8 +23,8 @@ from motioncast.inference.lift import needed_frames
 from motioncast.inference.stream import Stream
 
 FPS = 15.0
-MEMORY = 8
-"""Frames at 15 a second that a guess looks back."""
+MEMORY = 15
+"""Frames at 15 a second that a guess looks back: one second."""
 HORIZON = 45
 DAMPING = 0.95
 
@@ -79,6 +79,17 @@ def root_velocity_damped(recent: Recent, ahead: np.ndarray) -> np.ndarray:
     return path[:, None, None, None] * recent.velocity(recent.place("pelvis"), 7)[:, None]
 
 
+def replay(recent: Recent, ahead: np.ndarray) -> np.ndarray:
+    """The last second runs backwards and forwards again: every pose is real, and nobody gets anywhere."""
+    span = np.clip(recent.steps, 1, MEMORY - 1)
+    back = np.abs((ahead[:, None] + span) % (2 * span) - span)  # 0, 1, ..., span, ..., 1, 0, 1, ...
+    times, people = MEMORY - 1 - back, np.arange(len(span))
+    before = np.minimum(times.astype(int), MEMORY - 2)
+    share = (times - before)[..., None, None]
+    poses = recent.positions[before, people] * (1 - share) + recent.positions[before + 1, people] * share
+    return poses - recent.positions[-1]
+
+
 Rule = Callable[[Recent, np.ndarray], np.ndarray]
 
 RULES: dict[str, Rule] = {
@@ -86,6 +97,7 @@ RULES: dict[str, Rule] = {
     "constant-velocity": constant_velocity,
     "neck-velocity": neck_velocity,
     "root-velocity-damped": root_velocity_damped,
+    "replay": replay,
 }
 """Guesses by name. A rule gets the last frames at 15 a second and how many such frames to look ahead."""
 

@@ -86,7 +86,7 @@ def codes(objects: Sequence[SceneObject], origin: np.ndarray, across: np.ndarray
     cosine, sine = across[:, None, 0], across[:, None, 1]
     x, y, z = points.T
     world = np.stack([cosine * x - sine * y, sine * x + cosine * y, np.broadcast_to(z, (len(across), POINTS))], -1)
-    world = world + origin[:, None]
+    world = (world + origin[:, None]).astype(np.float32)
     seen = np.zeros((len(origin), len(objects), WIDTH), np.float32)
     for column, thing in enumerate(objects):
         seen[:, column, :POINTS] = surface_distance(thing.at(frame), world)

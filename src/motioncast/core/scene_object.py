@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from motioncast.core.rotation import conjugate, rotate
+from motioncast.core.rotation import to_matrix
 from motioncast.errors import SceneError
 
 CATEGORIES = (
@@ -116,11 +116,11 @@ class SceneObject:
 
     def inward(self, points: np.ndarray) -> np.ndarray:
         """World points ``(..., 3)`` in the frame of an object that stands."""
-        return rotate(conjugate(self.rotation), points - self.position)
+        return (points - self.position) @ to_matrix(self.rotation).astype(np.float32)
 
     def outward(self, points: np.ndarray) -> np.ndarray:
         """Points ``(..., 3)`` of the object's frame in the world."""
-        return rotate(self.rotation, points) + self.position
+        return points @ to_matrix(self.rotation).astype(np.float32).T + self.position
 
     @property
     def corners(self) -> np.ndarray:

@@ -63,8 +63,8 @@ def similarity(words: np.ndarray, real: np.ndarray) -> np.ndarray:
         [0.5, 0.0]
     """
     steps = [np.diff(np.asarray(word, np.float64), axis=-3) for word in (words, real)]
-    lengths = [np.maximum(np.linalg.norm(step, axis=-1), FLOOR_M) for step in steps]
-    cosine = (steps[0] * steps[1]).sum(-1) / (lengths[0] * lengths[1])
+    lengths = [np.maximum(np.sqrt(np.einsum("...i,...i->...", step, step)), FLOOR_M) for step in steps]
+    cosine = np.einsum("...i,...i->...", *steps) / (lengths[0] * lengths[1])
     ratio = np.minimum(*lengths) / np.maximum(*lengths)
     return ((cosine + 1) / 2 * ratio).mean((-2, -1))
 
@@ -86,7 +86,7 @@ def ndms(words: np.ndarray, real: Dictionary) -> np.ndarray:
     """
     found = real.nearest(words)
     flat, indices = words.reshape(-1, *words.shape[-3:]), found.reshape(-1)
-    # a block at a time: the matched words of 250,000 words would be 700 MB
-    blocks = range(0, len(flat), 4096)
-    scores = [similarity(flat[i : i + 4096], real.words[indices[i : i + 4096]]) for i in blocks]
+    # a block at a time: the matched words of 250,000 words would be 700 MB; a small block stays in the cache
+    blocks = range(0, len(flat), 256)
+    scores = [similarity(flat[i : i + 256], real.words[indices[i : i + 256]]) for i in blocks]
     return np.concatenate([np.zeros(0), *scores]).reshape(found.shape)

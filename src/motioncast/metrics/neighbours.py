@@ -10,14 +10,17 @@ import numpy as np
 KEPT = 46
 """Axes of the first bounds: more make them tighter and dearer."""
 
-QUERIES = 64
-"""Queries of a block: with 100,000 points its bounds are 26 MB."""
+QUERIES = 2048
+"""Queries that are searched for together."""
 
-PAIRS = 2048
+ROWS, TILE = 512, 512
+"""Queries and points of one product: its bounds are 1 MB, which the cache of a core holds."""
+
+PAIRS = 256
 """Pairs that are measured at once."""
 
-MANY = 512
-"""Candidates of a query above which bounds over all axes are cheaper than measuring them."""
+MANY = 8
+"""Candidates of a query in a tile above which bounds over all axes are cheaper than measuring them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,14 +29,16 @@ class Neighbours:
 
     Turned to their principal axes, points differ mostly along the first few. With a point's first coordinates x and
     the length r of the rest, the triangle inequality bounds its squared distance to a query (y, s) from below by
-    ``|x - y|^2 + (r - s)^2``. One matrix product gives the bounds of a block of queries; the point of the least bound
-    gives a distance that is reached; only points whose bound is not above that are measured, in float64.
+    ``|x - y|^2 + (r - s)^2``. One matrix product a tile of points gives the bounds of a block of queries, of which only
+    the least is kept; the point of the least bound of all gives a distance that is reached; only tiles whose least
+    bound is not above that are looked at again, and only their points with such a bound are measured, in float64.
 
     Attributes:
         points: ``(points, dimensions)``.
         mean: Mean of the points.
         axes: Principal axes, ``(dimensions, dimensions)``, a column each, the most important first.
-        tables: What is multiplied with queries, over the first axes and over all: ``(axes + 2, points)``, float32.
+        tables: What is multiplied with queries, over the first axes and over all: ``(tiles, axes + 2, TILE)``, float32;
+            behind the last point the bounds are infinite.
         extent: Largest squared length of a point, from the mean.
     """
 
@@ -54,51 +59,62 @@ class Neighbours:
             >>> prepare(np.array([[0.0, 0.0], [3.0, 4.0], [3.0, 4.0]])).nearest(np.array([[2.0, 2.0], [2.0, 0.0]]))
             array([1, 0])
         """
+        blocks = [queries[start : start + QUERIES] for start in range(0, len(queries), QUERIES)]
         with ThreadPoolExecutor(threads) as pool:
-            shares = pool.map(lambda share: self._search(share, self.tables[0]), np.array_split(queries, threads))
-            return np.concatenate(list(shares))
+            return np.concatenate([np.zeros(0, np.int64), *pool.map(self._block, blocks)])
 
-    def _search(self, queries: np.ndarray, table: np.ndarray) -> np.ndarray:
-        # two buffers for all blocks: fresh ones would cost as much time as the product
-        bounds = np.empty((QUERIES, len(self.points)), np.float32)
-        near = np.empty(bounds.shape, bool)
-        answer = np.empty(len(queries), np.int64)
-        for start in range(0, len(queries), QUERIES):
-            block = np.asarray(queries[start : start + QUERIES], np.float64)
-            answer[start : start + QUERIES] = self._block(block, table, bounds[: len(block)], near[: len(block)])
-        return answer
-
-    def _block(self, queries: np.ndarray, table: np.ndarray, bounds: np.ndarray, near: np.ndarray) -> np.ndarray:
+    def _block(self, queries: np.ndarray) -> np.ndarray:
+        queries = np.asarray(queries, np.float64)
         turned = (queries - self.mean) @ self.axes
         squares = np.square(turned).sum(-1)
-        kept = len(table) - 2
-        # the bound less the query's own square is |x|^2 + r^2 - 2 x y - 2 r s
-        row = np.concatenate([-2 * turned[:, :kept], -2 * _rest(turned, kept), np.ones((len(queries), 1))], 1)
-        np.matmul(row.astype(np.float32), table, out=bounds)
-        reached = np.square(queries - self.points[bounds.argmin(1)]).sum(-1)
+        few = _factors(turned, self.tables[0].shape[1] - 2)
+        least, closest = self._least(few)
+        reached = np.square(queries - self.points[closest]).sum(-1) - squares
         # what float32 may have lost: a product of n terms errs by less than n eps times the product of the lengths
-        doubt = (kept + 8) * np.finfo(np.float32).eps * (squares + self.extent)
-        limit = np.nextafter((reached - squares + doubt).astype(np.float32), np.float32(np.inf))
-        np.less_equal(bounds, limit[:, None], out=near)
-        counts = np.count_nonzero(near, axis=1)
-        answer = np.empty(len(queries), np.int64)
-        crowded = (counts > MANY) & (table is not self.tables[1])
-        if crowded.any():
-            near[crowded] = False
-            answer[crowded] = self._search(queries[crowded], self.tables[1])
-        answer[~crowded] = self._measured(queries, near)
+        doubt = np.finfo(np.float32).eps * (squares + self.extent)
+        limit, limit_full = (
+            np.nextafter((reached + (table.shape[1] + 6) * doubt).astype(np.float32), np.float32(np.inf))
+            for table in self.tables
+        )
+        candidates = least <= limit
+        answer, distance = np.zeros(len(queries), np.int64), np.full(len(queries), np.inf)
+        for tile in np.flatnonzero(candidates.any(1)):
+            rows = np.flatnonzero(candidates[tile])
+            near = few[rows] @ self.tables[0][tile] <= limit[rows, None]
+            if np.count_nonzero(near) > MANY * len(rows):
+                full = _factors(turned[rows], turned.shape[1])
+                near &= full @ self.tables[1][tile] <= limit_full[rows, None]
+            row, column = np.divmod(np.flatnonzero(near), TILE)
+            self._measure(queries, rows[row], column + tile * TILE, answer, distance)
         return answer
 
-    def _measured(self, queries: np.ndarray, near: np.ndarray) -> np.ndarray:
-        """The nearest candidate of each query that has any."""
-        rows, columns = np.divmod(np.flatnonzero(near), near.shape[1])
-        distances = np.empty(len(rows))
+    def _least(self, few: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The least bound of each tile, ``(tiles, queries)``, and the point of the least of all, ``(queries,)``."""
+        least = np.empty((len(self.tables[0]), len(few)), np.float32)
+        columns = np.empty(least.shape, np.int64)
+        for start in range(0, len(few), ROWS):
+            rows = slice(start, start + ROWS)
+            every = np.arange(len(few[rows]))
+            bounds = np.empty((len(every), TILE), np.float32)
+            for tile, table in enumerate(self.tables[0]):
+                np.matmul(few[rows], table, out=bounds)
+                bounds.argmin(1, out=columns[tile, rows])
+                least[tile, rows] = bounds[every, columns[tile, rows]]
+        best = least.argmin(0)
+        return least, best * TILE + columns[best, np.arange(len(few))]
+
+    def _measure(
+        self, queries: np.ndarray, rows: np.ndarray, columns: np.ndarray, answer: np.ndarray, distance: np.ndarray
+    ) -> None:
+        """Measure pairs of query and point; ``answer`` and ``distance`` hold which is nearest so far."""
+        measured = np.empty(len(rows))
         for start in range(0, len(rows), PAIRS):
             pairs = slice(start, start + PAIRS)
-            distances[pairs] = np.square(queries[rows[pairs]] - self.points[columns[pairs]]).sum(-1)
-        order = np.lexsort((columns, distances, rows))
-        first = np.flatnonzero(np.diff(rows, prepend=-1))  # rows came in order
-        return columns[order[first]]
+            measured[pairs] = np.square(queries[rows[pairs]] - self.points[columns[pairs]]).sum(-1)
+        order = np.lexsort((columns, measured, rows))
+        order = order[np.flatnonzero(np.diff(rows[order], prepend=-1))]  # the nearest of each query
+        order = order[measured[order] < distance[rows[order]]]  # earlier points come first, and win if equally near
+        answer[rows[order]], distance[rows[order]] = columns[order], measured[order]
 
 
 def prepare(points: np.ndarray, kept: int = KEPT) -> Neighbours:
@@ -115,18 +131,30 @@ def prepare(points: np.ndarray, kept: int = KEPT) -> Neighbours:
     if not count:
         raise ValueError("no point to search among came; give at least one")
     mean = points.mean(0, dtype=np.float64)
-    # a block at a time: in float64 all points would take twice their room
-    blocks = [slice(start, start + PAIRS) for start in range(0, count, PAIRS)]
-    scatter = sum(((points[block] - mean).T @ (points[block] - mean) for block in blocks), np.zeros(2 * (dimensions,)))
+    # a tile at a time: in float64 all points would take twice their room
+    tiles = (points[start : start + TILE] - mean for start in range(0, count, TILE))
+    scatter = sum((tile.T @ tile for tile in tiles), np.zeros(2 * (dimensions,)))
     axes = np.linalg.eigh(scatter)[1][:, ::-1]
     kept = min(kept, dimensions)
-    first, full = np.empty((kept + 2, count), np.float32), np.empty((dimensions + 2, count), np.float32)
-    for block in blocks:
-        turned = (points[block] - mean) @ axes
+    first, full = (np.zeros((-(-count // TILE), rows + 2, TILE), np.float32) for rows in (kept, dimensions))
+    extent = 0.0
+    for tile in range(len(first)):
+        turned = (points[tile * TILE : (tile + 1) * TILE] - mean) @ axes
         squares = np.square(turned).sum(-1, keepdims=True)
+        extent = max(extent, float(squares.max()))
         for table, number in ((first, kept), (full, dimensions)):
-            table[:, block] = np.concatenate([turned[:, :number], _rest(turned, number), squares], 1).T
-    return Neighbours(points, mean, axes, (first, full), float(full[-1].max()))
+            table[tile, -1] = np.inf
+            table[tile, :, : len(turned)] = np.concatenate([turned[:, :number], _rest(turned, number), squares], 1).T
+    return Neighbours(points, mean, axes, (first, full), extent)
+
+
+def _factors(turned: np.ndarray, kept: int) -> np.ndarray:
+    """What a table is multiplied with, ``(queries, axes + 2)`` float32.
+
+    The bound less the query's own square is ``|x|^2 + r^2 - 2 x y - 2 r s``.
+    """
+    parts = [-2 * turned[:, :kept], -2 * _rest(turned, kept), np.ones((len(turned), 1))]
+    return np.concatenate(parts, 1).astype(np.float32)
 
 
 def _rest(turned: np.ndarray, kept: int) -> np.ndarray:

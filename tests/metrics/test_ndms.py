@@ -75,7 +75,8 @@ def test_neighbours_are_exact(real: Dictionary) -> None:
 @pytest.mark.parametrize("kept", [1, 4, 200])
 def test_neighbours_are_exact_however_loose_the_bounds(kept: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(neighbours, "MANY", 1)  # both kinds of bounds are used
-    for name, size in (("PAIRS", 5), ("TILE", 64), ("ROWS", 16), ("QUERIES", 50)):  # and blocks that do not come out even
+    # and blocks that do not come out even
+    for name, size in (("PAIRS", 5), ("TILE", 64), ("ROWS", 16), ("QUERIES", 50)):
         monkeypatch.setattr(neighbours, name, size)
     points = np.random.default_rng(1).normal(size=(500, 12)).astype(np.float32)
     queries = np.random.default_rng(2).normal(size=(130, 12)) * 2 + 0.5

@@ -10,6 +10,7 @@ from motioncast.core.skeleton import Skeleton
 from motioncast.core.skeletons import MRT15
 from motioncast.errors import InputError, ModelNotFound, SceneError, SkeletonError
 from motioncast.inference.lift import Lift
+from motioncast.inference.question import error_radius
 from motioncast.inference.registry import DEFAULT_MODEL, list_models, load
 from motioncast.inference.session import GraphForecaster
 from motioncast.testing import walkers
@@ -79,8 +80,8 @@ def test_the_radius_grows_with_time_and_nests(model: GraphForecaster) -> None:
 
 def test_radii_of_a_horizon_below_a_second_go_on(model: GraphForecaster) -> None:
     table = np.linspace(0.1, 1.4, 14)[:, None].repeat(15, 1).tolist()
-    short = replace(model, card=replace(model.card, horizon=14, radius={"levels": {"0.5": table}}))
-    radius = short.radius(Lift.between(MRT15, MRT15), walkers(), 28)["0.5"]
+    short = replace(model.card, horizon=14, radius={"levels": {"0.5": table}})
+    radius = error_radius(short, Lift.between(MRT15, MRT15), walkers(), 28)["0.5"]
     np.testing.assert_allclose(radius[[0, 13, 27], 0], [0.1, 1.4, 2.8], rtol=1e-5)
 
 

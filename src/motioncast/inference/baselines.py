@@ -201,7 +201,7 @@ def one_future(card: ModelCard, samples: int) -> tuple[str, ...]:
     """
     if samples < 1:
         raise InputError(f"{samples} samples were asked for; ask for at least 1")
-    if samples == 1:
+    if samples == 1 or card.stochastic:
         return ()
     doubt = "; its doubt is the error radius" if card.radius else ""
     return (f'model "{card.name}" has one future, not {samples}{doubt}',)

@@ -16,8 +16,8 @@ HEIGHT_M, SPEED_M_S, LEAST = 0.05, 0.3, 4
 
 
 def speed(points: np.ndarray) -> np.ndarray:
-    """Speed of points ``(time, ..., 3)`` or ``(time, ..., 2)``, ``(time, ...)`` metres a second."""
-    return np.linalg.norm(np.gradient(points, axis=0), axis=-1) * FPS if len(points) > 1 else np.zeros(points.shape[:-1])
+    """Speed of points ``(..., time, points, 3)`` or ``(..., time, points, 2)``, ``(..., time, points)`` metres a second."""
+    return np.linalg.norm(np.gradient(points, axis=-3), axis=-1) * FPS
 
 
 def smoothed(values: np.ndarray, deviation: float) -> np.ndarray:
@@ -44,22 +44,26 @@ def foot_contact(positions: np.ndarray, floor_m: float = 0.0) -> np.ndarray:
 
     Args:
         positions: One person, ``(time, 31, 3)``.
-        floor_m: Height of the floor, or of what is stood on, ``()`` or ``(time, 1)``.
+        floor_m: Height of the floor, or of what is stood on.
     """
-    points = positions[:, FEET].reshape(len(positions), 2, 2, 3)
-    low = points[..., 2].min(-1) - floor_m < HEIGHT_M
-    return np.stack([lasting(side, LEAST) for side in (low & (speed(points).min(-1) < SPEED_M_S)).T], -1)
+    feet = positions[:, FEET]
+    low, slow = feet[..., 2] - floor_m < HEIGHT_M, speed(feet) < SPEED_M_S
+    standing = low.reshape(-1, 2, 2).any(-1) & slow.reshape(-1, 2, 2).any(-1)
+    return np.stack([lasting(side, LEAST) for side in standing.T], -1)
 
 
-def sliding(positions: np.ndarray) -> float:
-    """Mean horizontal speed of the middle of feet in contact, ``(time, 31, 3)`` -> metres a second.
+def sliding(feet: np.ndarray) -> np.ndarray:
+    """Mean horizontal speed of the middle of feet in contact, ``(...)`` metres a second.
 
     The middle between ball and tip: a foot that turns on its spot does not slide.
+
+    Args:
+        feet: The joints ``FEET`` of one person, ``(..., time, 4, 3)``.
     """
-    feet = positions[:, FEET].reshape(len(positions), 2, 2, 3)
-    pace = speed(feet[..., :2].mean(2))
-    standing = (feet[..., 2].min(-1) < HEIGHT_M) & (pace < 2 * SPEED_M_S)
-    return float(pace[standing].mean()) if standing.any() else 0.0
+    sides = feet.reshape(*feet.shape[:-2], 2, 2, 3)
+    pace = speed(sides[..., :2].mean(-2))
+    standing = (sides[..., 2].min(-1) < HEIGHT_M) & (pace < 2 * SPEED_M_S)
+    return (pace * standing).sum((-2, -1)) / np.maximum(standing.sum((-2, -1)), 1)
 
 
 def runs(mask: np.ndarray) -> list[tuple[int, int]]:

@@ -10,8 +10,8 @@ import numpy as np
 from motioncast.core.skeletons import CMU31
 from motioncast.datasets.rooms.bodies import PELVIS, bone_lengths, facing, turned
 from motioncast.datasets.rooms.clips import Clip
-from motioncast.datasets.rooms.contacts import FEET, FPS, lasting, runs, smoothed, speed
-from motioncast.datasets.rooms.stitch import BLEND, MIDDLE, continuations, usual_sliding
+from motioncast.datasets.rooms.contacts import FEET, FPS, lasting, pivot, runs, smoothed
+from motioncast.datasets.rooms.stitch import BLEND, MIDDLE, continuations
 
 COMPARED = tuple(
     CMU31.index(name)
@@ -26,6 +26,9 @@ VELOCITY_S = 0.15
 
 SLOWEST_M_S, FASTEST_M_S = 0.45, 2.0
 SHORTEST_S = 1.2
+LEAST_S = 2.2
+"""Walking of one person that a gait is made of."""
+
 LEAST = round(1.0 * FPS)
 """Frames of the shortest piece of a walk, beside its blends."""
 
@@ -36,19 +39,21 @@ class Gait:
 
     Attributes:
         positions: All walking frames, ``(frames, 31, 3)``, floor at z = 0.
+        looks: Where the person faces in each of them, ``(frames,)`` radians.
+        pivots: Where the person stands, ``(frames, 2)``.
         firsts: For each frame the first frame of the stretch that it belongs to, ``(frames,)``.
         ends: Likewise its end, exclusive.
         onward: For each frame others that go on like it, ``(frames, ways)``: see ``stitch.continuations``.
-        usual_sliding: Limit of how much feet may slide in a blend, metres a second.
         takes: The take of each frame.
         lengths: Bone lengths, ``(31,)``.
     """
 
     positions: np.ndarray
+    looks: np.ndarray
+    pivots: np.ndarray
     firsts: np.ndarray
     ends: np.ndarray
     onward: np.ndarray
-    usual_sliding: float
     takes: np.ndarray
     lengths: np.ndarray
 
@@ -85,32 +90,18 @@ def walking(positions: np.ndarray) -> np.ndarray:
 
 def gait_of(clips: Sequence[Clip]) -> Gait | None:
     """The walking of one subject, or None where there is too little for a round of steps."""
-    parts, firsts, ends, seen, takes = [], [], [], [], []
-    at = 0
-    for clip in clips:
-        positions = clip.positions[:, 0]
-        own = features(positions)
-        for first, end in runs(walking(positions)):
-            parts.append(positions[first:end])
-            seen.append(own[first:end])
-            firsts.append(np.full(end - first, at))
-            at += end - first
-            ends.append(np.full(end - first, at))
-            takes += [clip.name] * (end - first)
-    if at < 2.2 * FPS:
+    found = [
+        (clip, first, end) for clip in clips for first, end in runs(walking(clip.positions[:, 0]))
+    ]
+    lengths = [end - first for _, first, end in found]
+    if sum(lengths) < LEAST_S * FPS:
         return None
-    positions = np.concatenate(parts)
-    return Gait(
-        positions,
-        np.concatenate(firsts),
-        np.concatenate(ends),
-        continuations(np.concatenate(seen), np.concatenate(firsts), np.concatenate(ends), LEAST + MIDDLE + BLEND),
-        usual_sliding(positions),
-        np.array(takes),
-        bone_lengths(positions),
-    )
-
-
-def pace(positions: np.ndarray) -> float:
-    """Median speed of the pelvis, metres a second."""
-    return float(np.median(speed(positions[:, PELVIS, :2])))
+    positions = np.concatenate([clip.positions[first:end, 0] for clip, first, end in found])
+    seen = np.concatenate([features(clip.positions[:, 0])[first:end] for clip, first, end in found])
+    pivots = np.concatenate([pivot(clip.positions[:, 0])[first:end] for clip, first, end in found])
+    ends = np.cumsum(lengths).repeat(lengths)
+    firsts = ends - np.repeat(lengths, lengths)
+    looks = facing(positions)
+    onward = continuations(positions, seen, looks, pivots, firsts, ends, LEAST + MIDDLE + BLEND)
+    takes = np.repeat([clip.name for clip, _, _ in found], lengths)
+    return Gait(positions, looks, pivots, firsts, ends, onward, takes, bone_lengths(positions))

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from motioncast.datasets.rooms.bodies import PELVIS, turned
-from motioncast.datasets.rooms.contacts import FPS, pivot
+from motioncast.datasets.rooms.contacts import FPS
 from motioncast.datasets.rooms.gait import LEAST, Gait
 from motioncast.datasets.rooms.ground import Ground
 from motioncast.datasets.rooms.steer import bends, rates
-from motioncast.datasets.rooms.stitch import BLEND, MIDDLE, blended, onto, placed, slides
+from motioncast.datasets.rooms.stitch import BLEND, MIDDLE, blended, placed
 
 TURNS = np.radians([-75, -45, -20, 0, 20, 45, 75])
 """Rates of turning that a walker chooses from, radians a second."""
@@ -33,6 +33,8 @@ class Track:
         start: Its first frame in the room.
         tail: ``(BLEND, 31, 3)`` frames that follow the parts, to be blended with what comes next.
         source: Frame of the gait at the middle of the tail.
+        look: Where the person faces there, radians.
+        stand: Where the person stands there, ``(2,)``.
         rate: Rate of turning at the end, radians a second.
         parts: Positions one after another, each ``(time, 31, 3)``.
         takes: What each part was made of.
@@ -41,6 +43,8 @@ class Track:
     start: int
     tail: np.ndarray
     source: int
+    look: float
+    stand: np.ndarray
     rate: float = 0.0
     parts: tuple[np.ndarray, ...] = ()
     takes: tuple[str, ...] = ()
@@ -76,8 +80,10 @@ def enter(gait: Gait, door: np.ndarray, start: int, random: np.random.Generator)
     x, y, angle = door
     turn = angle - np.arctan2(way[1], way[0])
     inwards = np.array([np.cos(angle), np.sin(angle)])
-    tail = placed(tail, turn, np.array([x, y]) - 0.9 * inwards - turned(tail[0, PELVIS, :2], turn))
-    return Track(start, tail, first + MIDDLE)
+    shift = np.array([x, y]) - 0.9 * inwards - turned(tail[0, PELVIS, :2], turn)
+    middle = first + MIDDLE
+    look, stand = float(gait.looks[middle] + turn), placed(gait.pivots[middle], turn, shift)
+    return Track(start, placed(tail, turn, shift), middle, look, stand)
 
 
 def walk_to(
@@ -111,26 +117,28 @@ def walk_on(
     known = gait.onward[track.source]
     for middle in random.permutation(known[known >= 0]):
         first = int(middle) - MIDDLE
-        piece = gait.positions[first : _end(gait, first, random)].astype(np.float64)
-        angle, shift = onto(track.tail, piece[:BLEND], MIDDLE)
-        piece = placed(piece, angle, shift)
-        turn, moved = bends(pivot(piece), rates(track.rate, FIRST, SECOND, len(piece)), MIDDLE)
+        end = _end(gait, first, random)
+        angle = float(track.look - gait.looks[middle])
+        shift = track.stand - turned(gait.pivots[middle], angle)
+        piece = placed(gait.positions[first:end].astype(np.float64), angle, shift)
+        stands = placed(gait.pivots[first:end], angle, shift)
+        turn, moved = bends(stands, rates(track.rate, FIRST, SECOND, len(piece)), MIDDLE)
         paths = turned(piece[None, :, PELVIS, :2], turn) + moved
         cost = np.where(ground.free(paths, track.now), _effort(paths, goal, ground), np.inf)
         best = int(cost.argmin())
         if not np.isfinite(cost[best]):
             continue
         bent = placed(piece, turn[best, :, None], moved[best, :, None])
-        mixed = blended(track.tail, bent[:BLEND], gait.lengths)
-        if slides(mixed, gait.usual_sliding):
-            continue
+        last = len(piece) - BLEND + MIDDLE
         return replace(
             track,
             tail=bent[-BLEND:],
-            source=first + len(piece) - BLEND + MIDDLE,
+            source=first + last,
+            look=float(gait.looks[first + last] + angle + turn[best, last]),
+            stand=turned(stands[last], turn[best, last]) + moved[best, last],
             rate=float(SECOND[best]),
-            parts=(*track.parts, np.concatenate([mixed, bent[BLEND:-BLEND]])),
-            takes=(*track.takes, *dict.fromkeys(gait.takes[first : first + len(piece)].tolist())),
+            parts=(*track.parts, np.concatenate([blended(track.tail, bent[:BLEND], gait.lengths), bent[BLEND:-BLEND]])),
+            takes=(*track.takes, *dict.fromkeys(gait.takes[first:end].tolist())),
         )
     return None
 

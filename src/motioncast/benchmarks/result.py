@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
+import motioncast
 from motioncast.errors import InputError
 from motioncast.formats.files import atomic_write
 
@@ -24,8 +26,8 @@ class Row:
         metric: Its name; ``_at`` a moment, ``_until`` a moment as a mean from the first frame on.
         horizon_s: The moment.
         value: The figure.
-        unit: mm, cm or 1.
-        n: Windows that are scored.
+        unit: mm, cm, m, m/s or 1.
+        n: Windows in which it is measured.
         low: Lower end of the interval; None where there is none.
         high: Upper end.
     """
@@ -135,3 +137,14 @@ def comparable(results: list[Result]) -> list[Result]:
         told = ", ".join(f"{model} ({protocol})" for protocol, model in hashes.items())
         raise InputError(f"results of different protocols do not compare: {told}; evaluate them again on one data set")
     return sorted(results, key=lambda result: result.ratio.value)
+
+
+def commit() -> str:
+    """State of the code: its commit, with ``+`` where files differ from it; the version outside a checkout."""
+    root = Path(__file__).parents[3]
+    if (root / ".git").exists():
+        line = ["git", "-C", str(root), "describe", "--always", "--dirty=+", "--abbrev=12", "--exclude=*"]
+        done = subprocess.run(line, capture_output=True, text=True)
+        if done.returncode == 0:
+            return done.stdout.strip()
+    return motioncast.__version__

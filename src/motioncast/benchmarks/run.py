@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import subprocess
 from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 
-import motioncast
 from motioncast.benchmarks.protocol import Protocol, checksum
 from motioncast.benchmarks.protocols import windows_of
-from motioncast.benchmarks.result import Result
+from motioncast.benchmarks.result import Result, commit
+from motioncast.benchmarks.rooms.run import evaluate_rooms
+from motioncast.benchmarks.rooms.windows import PROTOCOL as ROOMS
 from motioncast.benchmarks.scoring import independent, score
 from motioncast.benchmarks.spread import Spread, serially
 from motioncast.core.forecaster import Forecaster
@@ -48,6 +48,10 @@ def evaluate(
         InputError: If the data is missing, or the model is of another skeleton.
     """
     forecaster = load(model) if isinstance(model, str) else model
+    if benchmark == ROOMS.name:
+        if spread is not serially:
+            raise InputError(f"{benchmark} is forecast one room after the other; leave --workers and --ray out")
+        return evaluate_rooms(forecaster, Path(data), split, alone, progress)
     protocol, windows = windows_of(benchmark, Path(data), split)
     card = forecaster.card
     if card.skeleton not in ("any", protocol.skeleton):
@@ -90,14 +94,3 @@ def forecast_windows(
     scenes = [Scene(positions[index], skeleton, protocol.fps, observed[index]) for index in range(len(windows))]
     answers = spread(model, scenes, horizon_s, alone, progress or (lambda share: None))
     return np.stack(answers)
-
-
-def commit() -> str:
-    """State of the code: its commit, with ``+`` where files differ from it; the version outside a checkout."""
-    root = Path(__file__).parents[3]
-    if (root / ".git").exists():
-        line = ["git", "-C", str(root), "describe", "--always", "--dirty=+", "--abbrev=12", "--exclude=*"]
-        done = subprocess.run(line, capture_output=True, text=True)
-        if done.returncode == 0:
-            return done.stdout.strip()
-    return motioncast.__version__

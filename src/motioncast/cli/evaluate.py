@@ -58,7 +58,7 @@ def evaluate(
             (
                 row.metric,
                 f"{row.horizon_s:.2f} s",
-                f"{row.value:.3f}" if row.unit == "1" else f"{row.value:.1f} {row.unit}",
+                _printed(row.value, row.unit),
                 "-" if row.low is None or row.high is None else f"{row.low:.4g} to {row.high:.4g}",
             )
             for row in result.rows
@@ -68,3 +68,7 @@ def evaluate(
         f"\n{result.windows} windows of {result.takes} takes: {result.setting['windows']} ({split}); "
         f"intervals over {result.independent}; protocol {result.protocol}"
     )
+
+
+def _printed(value: float, unit: str) -> str:
+    return f"{value:.1f} {unit}" if unit in ("mm", "cm") else f"{value:.3f} {unit}".removesuffix(" 1")

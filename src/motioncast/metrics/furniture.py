@@ -49,11 +49,11 @@ def joint_depth(things: Sequence[SceneObject], motion: np.ndarray, sitting: np.n
     for thing in things:
         if thing.shape not in ("box", "cylinder"):
             continue
-        # most joints are far from most objects: only those in the ball around it are measured
-        near = np.square(motion - thing.position).sum(-1) < np.square(thing.size / 2).sum()
+        near = _within(motion - thing.position, thing.size / 2)
         if sitting is not None and thing.category == "sittable":
             near &= ~sitting[..., None]
-        deepest[near] = np.maximum(deepest[near], -signed_distance(thing, motion[near]))
+        if near.any():
+            deepest[near] = np.maximum(deepest[near], -signed_distance(thing, motion[near]))
     return deepest
 
 
@@ -108,18 +108,27 @@ def above_top(things: Sequence[SceneObject], points: np.ndarray, floor_m: float 
         >>> above_top([stool], np.array([[0.1, 0.0, 0.6], [0.5, 0.0, 0.6]]), floor_m=0.0).round(3)
         array([0.1, 0.6])
     """
-    points = np.asarray(points, np.float64)
-    highest = np.full(points.shape[:-1], float(floor_m))
+    flat = np.asarray(points, np.float64).reshape(-1, 3)
+    highest = np.full(len(flat), float(floor_m))
     for thing in things:
         if thing.shape not in ("box", "cylinder"):
             continue
-        top, aside = thing.position[2] + thing.size[2] / 2, np.abs(thing.inward(points)[..., :2])
-        if thing.shape == "box":
-            over = (aside <= thing.size[:2] / 2).all(-1)
-        else:
-            over = np.linalg.norm(aside, axis=-1) <= thing.size[0] / 2
-        highest = np.where(over & (points[..., 2] >= top - SUNK_M), np.maximum(highest, top), highest)
-    return points[..., 2] - highest
+        top, half = thing.position[2] + thing.size[2] / 2, thing.size[:2] / 2
+        near = (flat[:, 2] >= top - SUNK_M) & _within(flat[:, :2] - thing.position[:2], half)
+        if not near.any():
+            continue
+        aside = np.abs(thing.inward(flat[near])[:, :2])
+        near[near] = (aside <= half).all(-1) if thing.shape == "box" else np.linalg.norm(aside, axis=-1) <= half[0]
+        highest[near] = np.maximum(highest[near], top)
+    return (flat[:, 2] - highest).reshape(np.shape(points)[:-1])
+
+
+def _within(away: np.ndarray, half: np.ndarray) -> np.ndarray:
+    """Whether points ``(..., 2)`` or ``(..., 3)`` from the middle of a thing are in the ball around it, however turned.
+
+    Most are not: what is looked at closely is little.
+    """
+    return np.einsum("...i,...i", away, away) <= half @ half
 
 
 def seated(things: Sequence[SceneObject], motion: np.ndarray, hips: tuple[int, int]) -> np.ndarray:

@@ -84,11 +84,12 @@ def _to_rod(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray
     along, apart = end - start, point - start
     square = _dot(along, along)
     share = np.clip(_dot(apart, along) / np.where(square > 0, square, 1), 0, 1)
-    return np.linalg.norm(apart - share[..., None] * along, axis=-1)
+    rest = apart - share[..., None] * along
+    return np.sqrt(_dot(rest, rest))
 
 
 def _dot(one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    return (one * other).sum(-1)
+    return np.einsum("...i,...i", one, other)
 
 
 def minimum_distance(gap: np.ndarray) -> np.ndarray:

@@ -1,0 +1,160 @@
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from motioncast.benchmarks.result import load_result, save_result
+from motioncast.benchmarks.rooms.run import forecast_rooms, real_words, result_of
+from motioncast.benchmarks.rooms.scoring import figures_of
+from motioncast.benchmarks.rooms.tally import Mean, Pooled, Ratio, Tally, rows
+from motioncast.benchmarks.rooms.windows import PROTOCOL, RoomWindow, checksum, digest, manifest, windows_of_room
+from motioncast.benchmarks.run import evaluate
+from motioncast.benchmarks.spread import over_processes
+from motioncast.core.scene_object import SceneObject
+from motioncast.datasets.rooms import Event, Room
+from motioncast.errors import InputError
+from motioncast.inference.baselines import SimpleGuess
+from motioncast.testing import walkers
+
+THINGS = (
+    SceneObject("stool of person 2", "sittable", "cylinder", (0.4, 0.4, 0.45), (3.0, 1.0, 0.225), role="caused"),
+    SceneObject("stool 9", "sittable", "cylinder", (0.4, 0.4, 0.45), (-3.0, 1.0, 0.225), role="decoy"),
+    SceneObject("wall 1", "occluder", "box", (0.1, 30, 2.4), (12.0, 0.0, 1.2), role="decoy"),
+)
+
+
+def made_up_room(seed: int = 0) -> Room:
+    """Four walkers for 13 s; the second leaves after 5 s, the third comes after 2 s, the fourth is never seen."""
+    scene = walkers(people=4, frames=325, fps=25, seed=seed)
+    observed = scene.observed.copy()
+    observed[125:, 1] = False
+    observed[:50, 2] = False
+    observed[:, 3] = False
+    scene = replace(scene, observed=observed, objects=THINGS, floor_m=0.0, source=f"room {seed}")
+    events = (Event("sit", 0, 100, 150, "stool of person 2"), Event("sit", 2, 60, 90, "stool 9"))
+    pairs = {(0, 1): "recorded", (0, 2): "composed", (1, 2): "composed"}
+    return Room(scene, events, pairs, np.zeros(observed.shape[:2], bool), ((),) * 4, seed, "test")
+
+
+@pytest.fixture(scope="module")
+def windows() -> list[RoomWindow]:
+    return [window for seed in range(3) for window in windows_of_room(made_up_room(seed))]
+
+
+def futures(windows: list[RoomWindow]) -> list[np.ndarray]:
+    return [window.future[None] for window in windows]
+
+
+def test_only_who_is_there_at_now_is_handed_over_and_masked_when_gone(windows: list[RoomWindow]) -> None:
+    window = windows[0]
+    assert window.scene.people == ("person 1", "person 2")
+    assert window.scene.frames == PROTOCOL.history
+    assert window.future.shape == (250, 2, 15, 3)
+    assert window.seen.sum(0).tolist() == [250, 100]  # frames 25 to 124
+    assert window.pairs == {frozenset((0, 1))}
+    assert [(goal.person, goal.frame) for goal in window.goals] == [(0, 100 - 24)]
+
+
+def test_nothing_tells_a_model_what_will_be_used(windows: list[RoomWindow]) -> None:
+    window = windows[0]
+    assert {thing.role for thing in window.scene.objects} == {""}
+    assert [thing.name for thing in window.scene.objects] == ["sittable 1", "sittable 2", "occluder 3"]
+    assert window.scene.objects[window.goals[0].thing].position[0] == 3.0
+    turned = replace(made_up_room(), scene=replace(made_up_room().scene, objects=THINGS[::-1]))
+    assert digest(windows_of_room(turned)[0]) == digest(window)
+
+
+def test_what_comes_after_now_reaches_no_model(windows: list[RoomWindow]) -> None:
+    room = made_up_room()
+    positions = room.scene.positions.copy()
+    positions[25:] += np.float32(1.0)
+    other = windows_of_room(replace(room, scene=replace(room.scene, positions=positions)))[0]
+    guess = SimpleGuess("root-velocity-damped")
+    np.testing.assert_array_equal(forecast_rooms(guess, [other])[0], forecast_rooms(guess, windows[:1])[0])
+    assert checksum([other]) != checksum(windows[:1])
+
+
+def test_the_truth_is_what_it_is_measured_against(windows: list[RoomWindow]) -> None:
+    real = real_words(windows)
+    found = {(figure.metric, figure.frame): figure for figure in figures_of(windows, futures(windows), real)}
+    ones = np.ones((1, len(windows)))
+    value = {key: figure.mean(ones)[0] for key, figure in found.items()}
+    for metric in ("ade_k1", "fde_k1", "path_length_w1", "apd_of_4"):
+        assert value[metric, 250] == pytest.approx(0, abs=1e-9), metric
+    assert value["mpjpe_at", 100] == pytest.approx(0, abs=1e-9)
+    assert value["ndms", 250] > 0.9  # its own words are in the reference
+    assert value["speed_in_second", 25] == pytest.approx(value["path_length", 250] / 10, rel=0.3)
+    assert 0.7 < value["seam_over_real", 250] < 1.5
+    assert value["sitting_frames", 250] == 0
+    assert ("seat_under_sitting", 250) not in value  # nobody sits: not measurable
+    assert value["goal_chance", 250] == 0.5
+
+
+def test_who_has_left_counts_no_more(windows: list[RoomWindow]) -> None:
+    wild = []
+    for window in windows:
+        future = window.future[None].copy()
+        future[0][~window.seen] = 1e3
+        wild.append(future)
+    ones = np.ones((1, len(windows)))
+    plain, other = (figures_of(windows, samples) for samples in (futures(windows), wild))
+    for one, two in zip(plain, other, strict=True):
+        assert one.mean(ones)[0] == pytest.approx(two.mean(ones)[0]), one.metric
+
+
+def test_a_result_ends_with_the_ratio_to_standing_still_and_can_be_written(
+    windows: list[RoomWindow], tmp_path: Path
+) -> None:
+    guess = SimpleGuess("zero-velocity")
+    result = result_of(guess.card, windows, forecast_rooms(guess, windows), None)
+    assert result.ratio.metric == "ratio_to_zero_velocity"
+    assert result.ratio.value == pytest.approx(1.0)
+    assert result.takes == 3
+    assert load_result(save_result(result, tmp_path)).rows == result.rows
+    truth = result_of(guess.card, windows, futures(windows), None)
+    assert truth.ratio.value == pytest.approx(0, abs=1e-9)
+    assert truth.protocol == result.protocol
+
+
+def test_each_person_alone_is_asked_alone(windows: list[RoomWindow]) -> None:
+    guess = SimpleGuess("neck-velocity")
+    for together, alone in zip(forecast_rooms(guess, windows), forecast_rooms(guess, windows, alone=True), strict=True):
+        np.testing.assert_allclose(together, alone, atol=1e-6)
+
+
+def test_the_manifest_lists_every_window(windows: list[RoomWindow]) -> None:
+    lines = manifest(windows).splitlines()
+    assert len(lines) == 1 + len(windows)
+    assert lines[1].startswith("0,room 0,0,274,25,2,3,1,")
+
+
+def test_rooms_are_not_shared_among_processes() -> None:
+    with pytest.raises(InputError, match="one room after the other"):
+        evaluate("zero-velocity", "rooms", "nowhere", spread=over_processes(2))
+
+
+def test_naive_twin_of_the_intervals() -> None:
+    tally = Tally(windows=4, horizon=250)
+    values, names = [[1.0, 2.0], [4.0], [np.nan], [8.0, 6.0, 1.0]], ["a", "a", "b", "c"]
+    for number, some in enumerate(values):
+        tally.add(number, "error", np.array(some), "m")
+        tally.add(number, "one", np.ones(len(some)), "m")
+    error, one = tally.figures()["error"][0], tally.figures()["one"][0]
+    pooled = Pooled("largest", 250, "m", [np.array(some) for some in values[:2]] * 2, lambda items: items.max())
+    found = rows([error, Ratio("ratio", error, one), Mean("mean", [error, one]), pooled], names, fps=25)
+    assert [row.value for row in found] == pytest.approx([22 / 6, 22 / 6, (22 / 6 + 1) / 2, 4.0])
+    assert found[0].n == 3
+    assert found[0].horizon_s == 10.0
+    # all draws of three rooms, each by its probability, are near what a thousand draws give
+    means = []
+    for draw in np.ndindex(3, 3, 3):
+        drawn = [
+            v for room in draw for name, some in zip(names, values, strict=True) if name == "abc"[room] for v in some
+        ]
+        means.append(np.nanmean(drawn) if not np.isnan(drawn).all() else np.nan)
+    low, high = np.nanpercentile(means, (2.5, 97.5))
+    assert found[0].low == pytest.approx(low, abs=0.2)
+    assert found[0].high == pytest.approx(high, abs=0.2)

@@ -294,6 +294,14 @@ COCO17 = Skeleton(
 
 SMPL24 = recognise([*SMPL22.names, "left_hand", "right_hand"], [*SMPL22.parents, 20, 21], "smpl24")
 
+HIK29 = Skeleton(
+    (*SMPL22.names, "jaw", "left_eyeball", "nose", "left_eye", "right_eye", "left_ear", "right_ear"),
+    (*SMPL22.parents, 15, 15, 15, 24, 24, 25, 26),
+    (*SMPL22.landmarks, "", "", "nose", "left_eye", "right_eye", "left_ear", "right_ear"),
+    "hik29",
+)
+"""Humans in Kitchens: SMPL-X's body, jaw and left eyeball, then five points of the skin of the face."""
+
 CMU31 = recognise(
     ["root", "lhipjoint", "lfemur", "ltibia", "lfoot", "ltoes", "rhipjoint", "rfemur", "rtibia", "rfoot", "rtoes",
      "lowerback", "upperback", "thorax", "lowerneck", "upperneck", "head",
@@ -321,7 +329,7 @@ OPENPOSE25 = recognise(
 """OpenPose's BODY_25; the pelvis comes first here, since a parent comes before its children."""
 
 SKELETONS: dict[str, Skeleton] = {
-    skeleton.label: skeleton for skeleton in (MRT15, SOMOF13, SMPL22, SMPL24, COCO17, CMU31, H36M17, OPENPOSE25)
+    skeleton.label: skeleton for skeleton in (MRT15, SOMOF13, SMPL22, SMPL24, HIK29, COCO17, CMU31, H36M17, OPENPOSE25)
 }
 """Known skeletons by name."""
 

@@ -25,8 +25,7 @@ from typing import Any
 import numpy as np
 
 from motioncast.core.scene import Scene
-from motioncast.core.skeleton import Skeleton
-from motioncast.core.skeletons import SMPL22
+from motioncast.core.skeletons import HIK29
 from motioncast.datasets.catalogue import DataSet, below, metric
 from motioncast.errors import FormatError, InputError
 from motioncast.formats.files import read_text
@@ -35,14 +34,6 @@ from motioncast.formats.pickles import read_members
 FPS = 25.0
 TRAIN, TEST = ("A", "B", "C"), ("D",)
 HISTORY = HORIZON = 250
-
-SKELETON = Skeleton(
-    (*SMPL22.names, "jaw", "left_eyeball", "nose", "left_eye", "right_eye", "left_ear", "right_ear"),
-    (*SMPL22.parents, 15, 15, 15, 24, 24, 25, 26),
-    (*SMPL22.landmarks, "", "", "nose", "left_eye", "right_eye", "left_ear", "right_ear"),
-    "hik29",
-)
-"""SMPL-X's body, jaw and left eyeball, then five points of the skin of the face."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +133,7 @@ def window(present: list[Stay], item: Item, history: int = HISTORY, horizon: int
             f"person {item.person} is not in kitchen {item.kitchen} at frame {item.frame}, as the evaluation list "
             "says; the copy lacks files"
         )
-    positions = np.zeros((history + horizon, len(there), len(SKELETON), 3), np.float32)
+    positions = np.zeros((history + horizon, len(there), len(HIK29), 3), np.float32)
     observed = np.zeros(positions.shape[:3], bool)
     for column, stay in enumerate(there):
         poses, frames = _poses(stay.path)
@@ -151,7 +142,7 @@ def window(present: list[Stay], item: Item, history: int = HISTORY, horizon: int
         positions[rows[inside], column] = poses[inside]
         observed[rows[inside], column] = True
     source = f"HiK {item.kitchen} {item.action} {item.frame}"
-    return Scene(positions, SKELETON, FPS, observed, tuple(f"person {stay.person}" for stay in there), source=source)
+    return Scene(positions, HIK29, FPS, observed, tuple(f"person {stay.person}" for stay in there), source=source)
 
 
 def takes(folder: str | Path) -> list[Path]:
@@ -169,17 +160,17 @@ def read(path: str | Path) -> Iterator[Scene]:
     path = Path(path)
     poses, frames = _poses(path)
     rows = frames - frames[0]
-    positions = np.zeros((int(rows[-1]) + 1, 1, len(SKELETON), 3), np.float32)
+    positions = np.zeros((int(rows[-1]) + 1, 1, len(HIK29), 3), np.float32)
     observed = np.zeros(positions.shape[:3], bool)
     positions[rows, 0], observed[rows] = poses, True
     person = path.stem.split("_")[1]
-    yield metric(Scene(positions, SKELETON, FPS, observed, (f"person {person}",), source=f"HiK {path.stem}"))
+    yield metric(Scene(positions, HIK29, FPS, observed, (f"person {person}",), source=f"HiK {path.stem}"))
 
 
 def _poses(path: Path) -> tuple[np.ndarray, np.ndarray]:
     data = read_members(path, ("poses3d", "frames"))
     poses, frames = np.asarray(data.get("poses3d")), _frames(path, data)
-    if poses.dtype.kind != "f" or poses.shape != (len(frames), len(SKELETON), 3) or not np.isfinite(poses).all():
+    if poses.dtype.kind != "f" or poses.shape != (len(frames), len(HIK29), 3) or not np.isfinite(poses).all():
         raise FormatError(path, f"has poses3d of shape {poses.shape}; expected {len(frames)} poses of 29 finite joints")
     return poses.astype(np.float32), frames
 

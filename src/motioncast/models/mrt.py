@@ -36,6 +36,7 @@ from motioncast.core.skeletons import SKELETONS
 from motioncast.nn.dct import dct_matrix, exact
 from motioncast.nn.frames import middle_of_people
 from motioncast.nn.gaps import fill_gaps
+from motioncast.nn.sinusoids import sinusoids
 
 FAR = -1e9
 """Attention score of a frame of somebody who is not there."""
@@ -222,7 +223,7 @@ class MRT(nn.Module):
         """Each person's own steps, encoded, ``(B P, T - 1, d)``."""
         steps = (frames[:, 1:] - frames[:, :-1]).transpose(1, 2).flatten(0, 1)
         tokens = self.embed_step(self.to_frequencies(steps / self.config.unit_m))
-        tokens = self.drop(tokens + sinusoids(tokens))
+        tokens = self.drop(tokens + places(tokens))
         for layer in self.local_encoder:
             tokens = layer(tokens, tokens)
         return tokens
@@ -230,7 +231,7 @@ class MRT(nn.Module):
     def global_features(self, frames: Tensor, present: Tensor) -> Tensor:
         """The poses of all people, encoded, ``(B, P T, d)``."""
         tokens = self.embed_pose(frames.transpose(1, 2))
-        tokens = self.drop(tokens + sinusoids(tokens)).flatten(1, 2)
+        tokens = self.drop(tokens + places(tokens)).flatten(1, 2)
         bias = ((~present).float() * FAR).repeat_interleave(frames.shape[1], 1)[:, None, None]
         for layer in self.global_encoder:
             tokens = layer(tokens, tokens, bias)
@@ -263,12 +264,10 @@ def nearness(frames: Tensor) -> Tensor:
     return torch.exp(-(poses - last).square().mean(-1))
 
 
-def sinusoids(tokens: Tensor) -> Tensor:
+def places(tokens: Tensor) -> Tensor:
     """The usual code of the place in time, ``(T, d)``, for tokens ``(..., T, d)``."""
     length, width = tokens.shape[-2:]
-    channel = torch.arange(int(width), device=tokens.device)
-    angle = torch.arange(int(length), device=tokens.device)[:, None] / 10000 ** (2 * (channel // 2) / int(width))
-    return torch.where(channel % 2 == 0, angle.sin(), angle.cos())
+    return sinusoids(torch.arange(int(length), device=tokens.device), int(width))
 
 
 def idle_parts(config: MRTConfig) -> nn.ModuleList:

@@ -42,6 +42,7 @@ from motioncast.core.skeletons import SKELETONS
 from motioncast.nn.dct import dct_matrix, exact
 from motioncast.nn.frames import root_joints
 from motioncast.nn.gaps import fill_gaps
+from motioncast.nn.sinusoids import sinusoids
 
 ARM = ("shoulder", "elbow", "wrist", "hand", "fingers", "thumb")
 LEG = ("hip", "knee", "ankle", "heel", "foot", "toe")
@@ -324,13 +325,6 @@ def bucket(distance: Tensor) -> Tensor:
     share = distance.clamp(min=1).log() / math.log(FARTHEST)
     beyond = (1 + share * (BUCKETS - 2)).round().clamp(max=BUCKETS - 1)
     return torch.where(distance <= 1, distance.round(), beyond).long()
-
-
-def sinusoids(place: Tensor, width: int) -> Tensor:
-    """The usual code of a place, ``(..., width)``, for whole numbers ``(...)``."""
-    channel = torch.arange(width, device=place.device)
-    angle = place[..., None] / 10000 ** (2 * (channel // 2) / width)
-    return torch.where(channel % 2 == 0, angle.sin(), angle.cos())
 
 
 MODEL, CONFIG = TBIFormer, TBIFormerConfig

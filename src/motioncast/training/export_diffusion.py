@@ -1,0 +1,118 @@
+"""From a trained denoiser to the two graphs that ship: the scene, once for a forecast, and a step of the diffusion.
+
+Both take any number of people and of objects. Normalisation, scaling and the exchange between people are inside; the
+loop over steps is not. Weights are stored as float16 and computed with as float32.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import warnings
+from dataclasses import replace
+from pathlib import Path
+
+import onnx
+import torch
+from torch import Tensor, nn
+
+from motioncast.core.card import ModelCard
+from motioncast.models.sast import CODE, SAST
+from motioncast.training.export import halved
+
+SCENE = {
+    "codes": {0: "people", 1: "objects"},
+    "objects": {0: "objects"},
+    "memory": {0: "people", 1: "objects"},
+}
+STEP = {
+    "history": {1: "people"},
+    "observed": {1: "people"},
+    "noisy": {0: "people"},
+    "estimate": {1: "people"},
+    "level": {},
+    "memory": {0: "people", 1: "objects"},
+    "objects": {0: "objects"},
+    "clean": {0: "people"},
+    "future": {1: "people"},
+}
+"""Names of inputs and outputs in order, and which of their axes have any length."""
+
+
+class _Scene(nn.Module):
+    """The objects of one scene, as a graph."""
+
+    def __init__(self, model: SAST) -> None:
+        super().__init__()
+        self.model = model
+
+    def forward(self, codes: Tensor, objects: Tensor) -> Tensor:
+        return self.model.encode_objects(codes[None], objects[None])[0]
+
+
+class _Step(nn.Module):
+    """One step for everybody in one scene, as a graph."""
+
+    def __init__(self, model: SAST) -> None:
+        super().__init__()
+        self.model = model
+
+    def forward(
+        self,
+        history: Tensor,
+        observed: Tensor,
+        noisy: Tensor,
+        estimate: Tensor,
+        level: Tensor,
+        memory: Tensor,
+        objects: Tensor,
+    ) -> tuple[Tensor, Tensor]:
+        clean, future = self.model(
+            history[None], observed[None], noisy[None], estimate[None], level, memory[None], objects[None]
+        )
+        return clean[0], future[0]
+
+
+def export_diffusion(model: SAST, card: ModelCard, folder: Path) -> ModelCard:
+    """Write ``NAME.scene.onnx``, ``NAME.onnx`` and ``NAME.json``.
+
+    Args:
+        model: The trained model.
+        card: Its card.
+        folder: Where the files go.
+
+    Returns:
+        The card with its parameters and the checksum of both graphs, one after the other.
+    """
+    config, people, things = model.config, 3, 4
+    poses = torch.randn(config.frames, people, model.joints, 3)
+    there = torch.ones(things, dtype=torch.bool)
+    step = (
+        poses[: config.history],
+        torch.ones(config.history, people, dtype=torch.bool),
+        torch.randn(people, config.horizon, model.joints, 3),
+        poses[config.history :],
+        torch.tensor(0.0),
+        torch.randn(people, things, config.scene_width),
+        there,
+    )
+    scene_path, path = folder / f"{card.name}.scene.onnx", folder / f"{card.name}.onnx"
+    _write(_Scene(model), (torch.rand(people, things, CODE), there), scene_path, SCENE)
+    _write(_Step(model), step, path, STEP)
+    done = replace(
+        card,
+        parameters=sum(parameter.numel() for parameter in model.parameters()),
+        checksum=hashlib.sha256(scene_path.read_bytes() + path.read_bytes()).hexdigest(),
+    )
+    path.with_suffix(".json").write_text(done.to_json() + "\n", encoding="utf-8")
+    return done
+
+
+def _write(graph: nn.Module, inputs: tuple[Tensor, ...], path: Path, axes: dict[str, dict[int, str]]) -> None:
+    names = list(axes)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the tracer remarks on every shape
+        torch.onnx.export(
+            graph.eval(), inputs, path, input_names=names[: len(inputs)], output_names=names[len(inputs) :],
+            dynamic_axes=axes, opset_version=18, dynamo=False,
+        )  # fmt: skip
+    path.write_bytes(halved(onnx.load(path)).SerializeToString())

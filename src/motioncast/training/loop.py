@@ -24,8 +24,12 @@ from torch import Tensor, nn
 from motioncast.errors import InputError
 from motioncast.models import build
 from motioncast.training.recipe import Recipe, read_run
+from motioncast.training.rooms_task import RoomsTask
 from motioncast.training.weights import load_weights
 from motioncast.training.windows_task import WindowsTask
+
+TASKS = {"windows": WindowsTask, "rooms": RoomsTask}
+"""What a recipe's ``task`` names."""
 
 
 def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = print) -> Path:
@@ -48,8 +52,8 @@ def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = pr
     fabric.launch()
     fabric.seed_everything(recipe.seed + fabric.global_rank, verbose=False)
     raw = build(recipe.model, recipe.sizes)
-    task = WindowsTask(recipe, raw, data)
-    if hasattr(raw, "fit"):
+    task = TASKS[recipe.task](recipe, raw, data)
+    if isinstance(task, WindowsTask) and hasattr(raw, "fit"):
         return _solve(recipe, raw, task, out, say)
     if recipe.start:
         load_weights(raw, Path(recipe.start)).train()
@@ -67,6 +71,7 @@ def train(recipe: Recipe, data: Path, out: Path, say: Callable[[str], None] = pr
         say(f"{recipe.name}: going on from step {start}")
     (out / "recipe.json").write_text(json.dumps(asdict(recipe), indent=1), encoding="utf-8")
     model, optimiser = fabric.setup(raw, optimiser)
+    model.mark_forward_method("loss")  # some tasks call it instead, and want precision and several processes too
     mean = fabric.to_device(mean)
     batches = task.batches(np.random.default_rng([recipe.seed, start, fabric.global_rank]))
     began, losses = time.perf_counter(), []

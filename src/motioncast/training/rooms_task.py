@@ -24,6 +24,10 @@ STILL_M = 0.5
 """Windows in which nobody comes this far from where he was are half as likely: people mostly stand about."""
 
 
+Kept = tuple[np.ndarray, np.ndarray, tuple[SceneObject, ...]]
+"""Positions, who is there when, objects."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class RoomBatch:
     """Windows of rooms with one number of people each.
@@ -65,10 +69,10 @@ class RoomsTask:
         self.checks = [self.batch(held_out, 8, random, mirror=0.0) for _ in range(VALIDATION_WINDOWS // 8)]
         model.fit_statistics(torch.from_numpy(self.whole_windows(np.random.default_rng(recipe.seed))))
 
-    def kept(self, room: Room) -> tuple[np.ndarray, np.ndarray, tuple[SceneObject, ...]]:
-        """What is kept of a room: positions, who is there when, objects."""
+    def kept(self, room: Room) -> Kept:
+        """What is kept of a room."""
         scene = room.scene.on(self.skeleton)
-        return scene.positions, scene.observed.all(-1), scene.objects
+        return scene.positions, room.here, scene.objects
 
     def batches(self, random: np.random.Generator) -> Iterator[RoomBatch]:
         """Batches without end, the next ones prepared beside the training."""
@@ -79,8 +83,8 @@ class RoomsTask:
 
         return ahead(endless())
 
-    def batch(self, built: list, scenes: int, random: np.random.Generator, mirror: float) -> RoomBatch:
-        """So many windows, all with the number of people of the first one drawn, or with that many of theirs."""
+    def batch(self, built: list[Kept], scenes: int, random: np.random.Generator, mirror: float) -> RoomBatch:
+        """So many windows; of each as many people as the emptiest one has."""
         config = self.config
         drawn = [self.window(built, random, mirror) for _ in range(scenes)]
         people = min(positions.shape[1] for positions, _, _ in drawn)
@@ -98,8 +102,8 @@ class RoomsTask:
         noise = random.standard_normal((scenes, people, config.horizon, len(self.skeleton), 3), np.float32)
         return RoomBatch(positions, present, seen, there, step, noise)
 
-    def window(self, built: list, random: np.random.Generator, mirror: float):  # noqa: ANN201
-        """A window of a room, of those who are there at now: positions, presence, objects."""
+    def window(self, built: list[Kept], random: np.random.Generator, mirror: float) -> Kept:
+        """A window of a room, of those who are there at now."""
         config = self.config
         while True:
             positions, present, objects = built[random.integers(len(built))]

@@ -30,6 +30,8 @@ class ModelCard:
         people: Most people that it takes.
         parameters: Number of trained parameters.
         stochastic: Whether several samples differ.
+        diffusion: Of a model that denoises: ``steps`` of its cosine schedule, and the ``sampler`` and number of
+            ``sampling_steps`` that answer by default; empty of all others.
         source: Paper and equations.
         data: What it was trained on.
         licence: Licence of code, data and weights.
@@ -53,6 +55,7 @@ class ModelCard:
     people: int = 16
     parameters: int = 0
     stochastic: bool = False
+    diffusion: Mapping[str, Any] = field(default_factory=dict)
     source: str = ""
     data: str = ""
     licence: str = ""

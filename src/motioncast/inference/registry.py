@@ -74,7 +74,8 @@ def _shipped() -> Iterator[tuple[str, Path]]:
     package = Path(str(resources.files("motioncast"))) / "weights"
     for folder in (package, home()):
         if folder.is_dir():
-            yield from ((path.stem, path) for path in sorted(folder.glob("*.onnx")))
+            graphs = sorted(folder.glob("*.onnx"))
+            yield from ((path.stem, path) for path in graphs if not path.name.endswith(".scene.onnx"))
 
 
 def _card(weights: Path) -> ModelCard:
@@ -85,6 +86,9 @@ def _card(weights: Path) -> ModelCard:
 
 
 def _graph(weights: Path) -> LiveForecaster:
-    from motioncast.inference.session import GraphForecaster  # onnxruntime only where a graph is run
+    # onnxruntime only where a graph is run
+    from motioncast.inference.denoiser import DiffusionForecaster
+    from motioncast.inference.session import GraphForecaster
 
-    return GraphForecaster(_card(weights), weights)
+    card = _card(weights)
+    return DiffusionForecaster(card, weights) if card.diffusion else GraphForecaster(card, weights)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from pathlib import Path
 
@@ -12,16 +12,20 @@ import numpy as np
 from motioncast.core.scene import Scene
 from motioncast.core.scene_object import SceneObject
 from motioncast.core.skeletons import CMU31
+from motioncast.datasets.rooms.acts import LOOK_BACK, Actor, actor_of, around, perform
 from motioncast.datasets.rooms.bodies import PELVIS
 from motioncast.datasets.rooms.clips import Clip, Library, load
 from motioncast.datasets.rooms.contacts import FPS
 from motioncast.datasets.rooms.events import Event
 from motioncast.datasets.rooms.footprint import footprint
 from motioncast.datasets.rooms.furnish import decoys, walls
-from motioncast.datasets.rooms.gait import Gait, gait_of
-from motioncast.datasets.rooms.ground import PERSONAL_SPACE_M, Ground
+from motioncast.datasets.rooms.gait import gait_of
+from motioncast.datasets.rooms.ground import Ground
 from motioncast.datasets.rooms.stitch import placed
 from motioncast.datasets.rooms.tracks import Track, enter, walk_to
+
+WISHES = {"walk": 0.2, "stand": 0.12, "sit": 0.4, "reach": 0.2, "write": 0.08}
+"""What somebody wants to do next, and how often."""
 
 LEAD = round(8 * FPS)
 """Frames that are made and thrown away, so that a room does not start empty."""
@@ -82,14 +86,19 @@ class Room:
 class Cast:
     """Who can play in the rooms of one split."""
 
-    gaits: dict[int, Gait]
+    actors: dict[int, Actor]
     couples: tuple[Clip, ...]
 
 
 def cast(library: Library) -> Cast:
     """The walks and couples of a library."""
-    gaits = {subject: gait for subject, clips in library.singles.items() if (gait := gait_of(clips)) is not None}
-    return Cast(gaits, tuple(clip for clip in library.couples if len(clip.positions) >= SHORTEST_TRACK))
+    actors: dict[int, Actor] = {}
+    for subject, clips in library.singles.items():
+        gait = gait_of(clips)
+        actor = None if gait is None else actor_of(gait)
+        if actor is not None:
+            actors[subject] = actor
+    return Cast(actors, tuple(clip for clip in library.couples if len(clip.positions) >= SHORTEST_TRACK))
 
 
 def rooms(data: str | Path, split: str, count: int, seed: int) -> Iterator[Room]:
@@ -124,6 +133,7 @@ def room(players: Cast, split: str, seed: int) -> Room:
     bodies: list[np.ndarray] = []  # (frames, 31, 3) each, not a number while away
     takes: list[tuple[str, ...]] = []
     together: set[tuple[int, int]] = set()
+    tracks: dict[int, Track] = {}
     if people > 1 and players.couples and random.random() < recipe.couple:
         clip = players.couples[int(random.integers(len(players.couples)))]
         dancers = _couple(clip, ground, random)
@@ -135,26 +145,43 @@ def room(players: Cast, split: str, seed: int) -> Room:
         made = _walker(players, ground, random)
         if made is None:
             break
-        body, names = made
+        track, body = made
+        tracks[len(bodies)] = track
         bodies.append(body)
-        takes.append(names)
+        takes.append(tuple(dict.fromkeys(track.takes)))
     positions = np.stack(bodies, 1)[LEAD:]
     here = np.isfinite(positions[..., 0]).all(-1)
     kept = np.flatnonzero(here.sum(0) >= FPS)
     positions, here = positions[:, kept], here[:, kept]
+    numbers = {old: new for new, old in enumerate(kept.tolist())}
+    synthetic, events, used = np.zeros(here.shape, bool), [], []
+    for old, track in tracks.items():
+        used += track.things
+        if old not in numbers:
+            continue
+        offset, person = track.start - LEAD, numbers[old]
+        for first, end in track.made:
+            synthetic[max(first + offset, 0) : max(end + offset, 0), person] = True
+        for event in track.events:
+            first, end = max(event.start + offset, 0), min(event.end + offset, len(positions))
+            if first < end:
+                events.append(replace(event, person=person, start=first, end=end))
+    events.sort(key=lambda event: event.start)
     points = positions[::2][here[::2]].reshape(-1, 3)
     taken = footprint(points, ground.half)
+    for item in used:
+        taken.take(*item.position[:2], float(2 * np.arctan2(item.rotation[3], item.rotation[0])), *item.size[:2])
     structure = walls(ground.half, ground.doors)
-    wanted = int(random.integers(recipe.objects[0], recipe.objects[1] + 1)) - len(structure)
-    objects = [*structure, *decoys([], wanted, taken, ground.half, random)]
+    wanted = int(random.integers(recipe.objects[0], recipe.objects[1] + 1)) - len(structure) - len(used)
+    kinds = [item.name.rsplit(" ", 1)[0] for item in used]
+    objects = [*structure, *used, *decoys(kinds, wanted, taken, ground, random)]
     scene = _scene(positions, here, objects, f"room {split} {seed}")
-    numbers = {old: new for new, old in enumerate(kept.tolist())}
     recorded = {(numbers[one], numbers[other]) for one, other in together if {one, other} <= numbers.keys()}
     pairs = {
         pair: "recorded" if pair in recorded else "composed" for pair in combinations(range(len(kept)), 2)
     }
     chosen = tuple(takes[old] for old in kept)
-    return Room(scene, (), pairs, np.zeros(here.shape, bool), chosen, seed, split)
+    return Room(scene, tuple(events), pairs, synthetic, chosen, seed, split)
 
 
 def _scene(positions: np.ndarray, here: np.ndarray, objects: list[SceneObject], source: str) -> Scene:
@@ -192,33 +219,50 @@ def _couple(clip: Clip, ground: Ground, random: np.random.Generator) -> list[np.
     return None
 
 
-def _walker(players: Cast, ground: Ground, random: np.random.Generator) -> tuple[np.ndarray, tuple[str, ...]] | None:
-    """Somebody who comes in, walks about and leaves, or None where there is no way."""
-    subjects = list(players.gaits)
+def _walker(players: Cast, ground: Ground, random: np.random.Generator) -> tuple[Track, np.ndarray] | None:
+    """Somebody who comes in, acts here and there and leaves, or None where there is no way."""
+    subjects = list(players.actors)
     for _ in range(TRIES):
-        gait = players.gaits[subjects[int(random.integers(len(subjects)))]]
+        actor = players.actors[subjects[int(random.integers(len(subjects)))]]
         start = int(random.integers(0, ground.frames - SHORTEST_TRACK))
-        track = _way(gait, start, ground, random)
+        known = list(ground.things)
+        track = _way(actor, start, ground, random)
         if track is not None:
-            return _enrolled(track.positions, start, ground), tuple(dict.fromkeys(track.takes))
+            return track, _enrolled(track.positions, start, ground)
+        ground.things = known
     return None
 
 
-def _way(gait: Gait, start: int, ground: Ground, random: np.random.Generator) -> Track | None:
+def _way(actor: Actor, start: int, ground: Ground, random: np.random.Generator) -> Track | None:
     door = ground.doors[int(random.integers(len(ground.doors)))]
-    track = enter(gait, door, start, random)
+    track = enter(actor.gait, door, start, random)
     until = min(ground.frames, start + round(random.uniform(11, 60) * FPS))
     misses = 0
-    while track.now < until:
-        goal = random.uniform(-1, 1, 2) * (ground.half - 1.3)
-        onward = walk_to(track, gait, goal, ground, random)
+    while track.now < until and misses < 4:
+        kind = str(random.choice(list(WISHES), p=list(WISHES.values())))
+        goal = _goal(kind, ground, random)
+        onward = walk_to(track, actor.gait, goal, ground, random)
         if onward is None:
             misses += 1
-            if misses > 3:
-                break
-        else:
-            track = onward
+            continue
+        track = onward
+        if kind != "walk" and track.frames > LOOK_BACK:
+            acted = perform(track, actor, kind, ground, random)
+            if acted is not None:
+                new = acted.things[len(track.things) :]
+                ground.things += [circle for item in new for circle in around(item)]
+                track = acted
     return track if track.frames >= SHORTEST_TRACK else None
+
+
+def _goal(kind: str, ground: Ground, random: np.random.Generator) -> np.ndarray:
+    """Somewhere in the room; by a wall for what is done there."""
+    if kind not in ("reach", "write"):
+        return random.uniform(-1, 1, 2) * (ground.half - 1.3)
+    goal = random.uniform(-1, 1, 2) * (ground.half - 1.3)
+    axis = int(random.integers(2))
+    goal[axis] = random.choice([-1, 1]) * (ground.half[axis] - 1.2)
+    return goal
 
 
 def _enrolled(positions: np.ndarray, start: int, ground: Ground) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 
 from motioncast.core.scene_object import SceneObject
 from motioncast.datasets.rooms.footprint import Footprint
-from motioncast.datasets.rooms.ground import DOOR_M
+from motioncast.datasets.rooms.ground import DOOR_M, Ground
 from motioncast.datasets.rooms.kinds import HUNG_M, KINDS, WALL_HEIGHT_M, Kind, thing
 
 DECOYS = 3
@@ -46,12 +46,12 @@ def walls(half: np.ndarray, doors: np.ndarray) -> list[SceneObject]:
             size = np.array([last - first, WALL_M, WALL_HEIGHT_M])
             angle = 0.0 if along == 0 else np.pi / 2
             name = f"wall {len(found) + 1}"
-            found.append(thing(name, "occluder", "box", size, *middle, 0.0, angle, "decoy"))
+            found.append(thing(KINDS["wall"], name, size, *middle, 0.0, angle, "decoy"))
     return found
 
 
 def decoys(
-    used: list[str], count: int, taken: Footprint, half: np.ndarray, random: np.random.Generator
+    used: list[str], count: int, taken: Footprint, ground: Ground, random: np.random.Generator
 ) -> list[SceneObject]:
     """Things in free space: three of the kind of each that is used, then the usual ones up to a count.
 
@@ -59,7 +59,7 @@ def decoys(
         used: Kinds of the things that people use.
         count: How many decoys are wanted; more where the used kinds ask for it, fewer where there is no room.
         taken: Where bodies and things are; what is set down is added to it.
-        half: Half the length and width of the room.
+        ground: The room.
         random: Source of places and sizes.
     """
     wanted = [kind for kind in used for _ in range(DECOYS)]
@@ -70,7 +70,7 @@ def decoys(
     wanted.sort(key=lambda name: (KINDS[name].place == "top", -KINDS[name].least[0] * KINDS[name].least[1]))
     found: list[SceneObject] = []
     for name in wanted:
-        placed = _placed(name, f"{name} {len(found) + 1}", found, taken, half, random)
+        placed = _placed(name, ground.name(name), found, taken, ground.half, random)
         if placed is not None:
             found.append(placed)
     return found
@@ -88,7 +88,7 @@ def _placed(
         if taken.free(x, y, angle, size[0], size[1]):
             taken.take(x, y, angle, size[0], size[1])
             height = HUNG_M if kind.place == "hung" else 0.0
-            return thing(name, kind.category, kind.shape, size, x, y, height, angle, "decoy")
+            return thing(kind, name, size, x, y, height, angle, "decoy")
     return None
 
 
@@ -124,5 +124,5 @@ def _on_top(
         others = [other for other in found if abs(other.position[2] - other.size[2] / 2 - top) < 0.01]
         if all(np.hypot(other.position[0] - x, other.position[1] - y) > 0.4 for other in others):
             angle = 2 * np.arctan2(base.rotation[3], base.rotation[0])
-            return thing(name, kind.category, kind.shape, size, float(x), float(y), top, float(angle), "decoy")
+            return thing(kind, name, size, float(x), float(y), top, float(angle), "decoy")
     return None

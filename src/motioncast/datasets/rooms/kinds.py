@@ -51,6 +51,7 @@ KINDS = {
     "kettle": Kind("kettle", "cylinder", (0.16, 0.16, 0.22), (0.2, 0.2, 0.27), "top"),
     "coffee machine": Kind("coffee_machine", "box", (0.35, 0.26, 0.34), (0.45, 0.36, 0.44), "top"),
     "trash": Kind("trash", "cylinder", (0.26, 0.26, 0.4), (0.4, 0.4, 0.7), "floor"),
+    "wall": Kind("occluder", "box", (0.2, 0.1, 2.4), (20.0, 0.1, 2.4), "wall"),
     "screen": Kind("occluder", "box", (0.06, 0.9, 1.6), (0.1, 1.6, 2.0), "floor"),
 }
 """Kinds by name. Out-of-bound markers, the thirteenth category, are left out as they are in the field's own data."""
@@ -61,8 +62,8 @@ HUNG_M = 0.95
 
 
 def thing(
-    name: str, category: str, shape: str, size: np.ndarray, x: float, y: float, z: float, angle: float, role: str
+    kind: Kind, name: str, size: np.ndarray, x: float, y: float, z: float, angle: float, role: str
 ) -> SceneObject:
-    """An object whose lower side is at a height z and which is turned about the vertical."""
+    """A thing whose lower side is at a height z and which is turned about the vertical; its back is its +x side."""
     turn = from_axis_angle(np.array([0.0, 0.0, angle]))
-    return SceneObject(name, category, shape, size, np.array([x, y, z + size[2] / 2]), turn, role=role)
+    return SceneObject(name, kind.category, kind.shape, size, np.array([x, y, z + size[2] / 2]), turn, role=role)

@@ -6,8 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from motioncast.core.scene_object import SceneObject
 from motioncast.datasets.rooms.bodies import PELVIS, turned
 from motioncast.datasets.rooms.contacts import FPS
+from motioncast.datasets.rooms.events import Event
 from motioncast.datasets.rooms.gait import LEAST, Gait
 from motioncast.datasets.rooms.ground import Ground
 from motioncast.datasets.rooms.steer import bends, rates
@@ -21,7 +23,7 @@ FIRST, SECOND = (way.ravel() for way in np.meshgrid(TURNS, TURNS))
 MOST = round(2.4 * FPS)
 """Frames of the longest piece of a walk."""
 
-STEPS = 24
+STEPS = 16
 """Pieces that are tried on the way to a goal."""
 
 
@@ -37,7 +39,10 @@ class Track:
         stand: Where the person stands there, ``(2,)``.
         rate: Rate of turning at the end, radians a second.
         parts: Positions one after another, each ``(time, 31, 3)``.
-        takes: What each part was made of.
+        takes: What it was made of.
+        made: First frames and ends of what inverse kinematics made, on the clock of the track.
+        events: What the person does, on the clock of the track.
+        things: What it takes to do that.
     """
 
     start: int
@@ -48,6 +53,9 @@ class Track:
     rate: float = 0.0
     parts: tuple[np.ndarray, ...] = ()
     takes: tuple[str, ...] = ()
+    made: tuple[tuple[int, int], ...] = ()
+    events: tuple[Event, ...] = ()
+    things: tuple[SceneObject, ...] = ()
 
     @property
     def frames(self) -> int:

@@ -47,7 +47,7 @@ def made_up(data, split, count, seed):
 def rooms(monkeypatch):
     monkeypatch.setattr(rooms_task, "rooms", made_up)
     monkeypatch.setattr(rooms_task, "VALIDATION_ROOMS", 1)
-    monkeypatch.setattr(rooms_task, "VALIDATION_WINDOWS", 8)
+    monkeypatch.setattr(rooms_task, "VALIDATION_BATCHES", 1)
 
 
 def task(**changes):
@@ -62,6 +62,7 @@ def test_a_batch_is_of_people_who_are_there_now_and_what_they_see():
     batch = learning.batch(learning.train, 4, np.random.default_rng(0), mirror=0.0)
     assert batch.present[:, 24].all()
     assert batch.codes.shape[:2] == batch.positions.shape[:1] + batch.positions.shape[2:3]
+    assert len(batch.positions) == max(1, 4 // batch.positions.shape[2])
     assert batch.there.any(1).all()
     assert (batch.step == batch.step[:, :1]).all(), "everybody of a scene is equally noisy, as in use"
 

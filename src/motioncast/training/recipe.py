@@ -22,7 +22,7 @@ class Recipe:
         model: Name of the file in ``models`` that defines it.
         sizes: Arguments of the model's configuration.
         steps: Optimiser steps.
-        batch: Scenes a step.
+        batch: Scenes a step; of rooms, people a step.
         learning_rate: Highest rate; it rises over ``warmup`` steps and falls along a cosine to a hundredth.
         warmup: Steps of the rise.
         weight_decay: Of AdamW.

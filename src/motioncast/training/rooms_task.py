@@ -18,7 +18,10 @@ from motioncast.datasets.rooms import Room, rooms
 from motioncast.training.ahead import ahead
 from motioncast.training.recipe import Recipe
 
-VALIDATION_ROOMS, VALIDATION_WINDOWS, VALIDATION_SEED = 24, 96, 2026
+VALIDATION_ROOMS, VALIDATION_BATCHES, VALIDATION_SEED = 24, 12, 2026
+
+MOST_PEOPLE = 6
+"""Where more are there, so many of them are drawn."""
 
 STILL_M = 0.5
 """Windows in which nobody comes this far from where he was are half as likely: people mostly stand about."""
@@ -53,7 +56,7 @@ class RoomsTask:
     """Windows of rooms built from the training takes.
 
     Args:
-        recipe: What is trained; ``rooms`` of them are built by its seed.
+        recipe: What is trained; ``rooms`` of them are built by its seed, ``batch`` people are seen a step.
         model: The model that learns.
         data: Folder with CMU's takes (``datasets.cmu``).
     """
@@ -66,7 +69,7 @@ class RoomsTask:
         held_out = [self.kept(room) for room in rooms(data, "validation", VALIDATION_ROOMS, VALIDATION_SEED)]
         random = np.random.default_rng(VALIDATION_SEED)
         # the same windows, steps and noise at every look
-        self.checks = [self.batch(held_out, 8, random, mirror=0.0) for _ in range(VALIDATION_WINDOWS // 8)]
+        self.checks = [self.batch(held_out, recipe.batch, random, mirror=0.0) for _ in range(VALIDATION_BATCHES)]
         model.fit_statistics(torch.from_numpy(self.whole_windows(np.random.default_rng(recipe.seed))))
 
     def kept(self, room: Room) -> Kept:
@@ -83,11 +86,17 @@ class RoomsTask:
 
         return ahead(endless())
 
-    def batch(self, built: list[Kept], scenes: int, random: np.random.Generator, mirror: float) -> RoomBatch:
-        """So many windows; of each as many people as the emptiest one has."""
+    def batch(self, built: list[Kept], asked: int, random: np.random.Generator, mirror: float) -> RoomBatch:
+        """Windows with about ``asked`` people in all, the same number each: that of the first one that is drawn."""
         config = self.config
-        drawn = [self.window(built, random, mirror) for _ in range(scenes)]
-        people = min(positions.shape[1] for positions, _, _ in drawn)
+        first = self.window(built, random, mirror)
+        people = min(first[0].shape[1], MOST_PEOPLE)
+        drawn = [first]
+        while len(drawn) < max(1, asked // people):
+            other = self.window(built, random, mirror)
+            if other[0].shape[1] >= people:
+                drawn.append(other)
+        scenes = len(drawn)
         things = max(len(objects) for _, _, objects in drawn)
         positions = np.zeros((scenes, config.frames, people, len(self.skeleton), 3), np.float32)
         present = np.zeros((scenes, config.frames, people), bool)

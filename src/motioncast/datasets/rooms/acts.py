@@ -6,6 +6,7 @@ plane of writing. Nothing is done where the thing would stand in somebody's way.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,13 +14,14 @@ import numpy as np
 from motioncast.core.scene_object import SceneObject
 from motioncast.core.shapes import signed_distance
 from motioncast.datasets.rooms import grammar
-from motioncast.datasets.rooms.bodies import PELVIS, facing
-from motioncast.datasets.rooms.contacts import FPS
+from motioncast.datasets.rooms.bodies import PELVIS, facing, turned
+from motioncast.datasets.rooms.clips import Clip
+from motioncast.datasets.rooms.contacts import FEET, FPS, foot_contact, smoothed, speed
 from motioncast.datasets.rooms.events import Event
-from motioncast.datasets.rooms.gait import Gait
+from motioncast.datasets.rooms.gait import Gait, gait_of
 from motioncast.datasets.rooms.ground import Ground
 from motioncast.datasets.rooms.kinds import HUNG_M, KINDS, thing
-from motioncast.datasets.rooms.puppet import HANDS, HIPS, Figure, Puppet, figure_of
+from motioncast.datasets.rooms.puppet import ANKLES, HANDS, HIPS, TIPS, Figure, Puppet, figure_of, toe_out
 from motioncast.datasets.rooms.stitch import BLEND, MIDDLE, placed
 from motioncast.datasets.rooms.tracks import Track
 
@@ -42,35 +44,50 @@ class Actor:
         figure: The build.
         landings: For each frame of the gait which foot has just landed, 0 left, 1 right, -1 none.
         starts: Frames of the gait in which a walk can begin.
+        scenes: Real stretches on the spot that begin and end standing, and their takes.
     """
 
     gait: Gait
     figure: Figure
     landings: np.ndarray
     starts: np.ndarray
+    scenes: tuple[tuple[str, np.ndarray], ...]
 
 
-def actor_of(gait: Gait) -> Actor | None:
-    """The actor with a gait, or None where no walk could begin."""
+def actor_of(clips: Sequence[Clip]) -> Actor | None:
+    """The actor of one subject's clips, or None where there is no walk, or no frame in which it could begin."""
+    gait = gait_of(clips)
+    if gait is None:
+        return None
     landings = grammar.landed(gait.positions, gait.looks)
     index = np.arange(len(gait))
     fits = (landings >= 0) & (index - gait.firsts >= 2) & (gait.ends - index > BLEND + 2)
     ahead = np.minimum(index + 1 + MIDDLE, len(gait) - 1)
     starts = np.flatnonzero(fits & (gait.onward[ahead, 0] >= 0))
-    return Actor(gait, figure_of(gait), landings, starts) if len(starts) else None
+    if not len(starts):
+        return None
+    figure = figure_of(gait)
+    scenes = tuple((clip.name, scene) for clip in clips for scene in on_the_spot(clip.positions[:, 0], figure.height))
+    return Actor(gait, figure, landings, starts, scenes)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Act:
-    """Something done on the spot: events on the clock of the puppet in seconds, and things.
+    """Something done on the spot.
 
     Attributes:
-        events: Kind, start and end in seconds, thing, point, outward angle.
+        puppet: Who stands at the end of it.
+        events: Kind, start and end in seconds after the cut, thing, point, outward angle.
         things: In the order in which they are set up.
+        before: Motion that is over before the puppet's own: positions and whether they are real.
+        take: What the real part is from.
     """
 
-    events: tuple[tuple[str, float, float, str, np.ndarray, float], ...]
-    things: tuple[SceneObject, ...]
+    puppet: Puppet
+    events: tuple[tuple[str, float, float, str, np.ndarray, float], ...] = ()
+    things: tuple[SceneObject, ...] = ()
+    before: tuple[tuple[np.ndarray, bool], ...] = ()
+    take: str = ""
 
 
 def perform(track: Track, actor: Actor, kind: str, ground: Ground, random: np.random.Generator) -> Track | None:
@@ -79,49 +96,59 @@ def perform(track: Track, actor: Actor, kind: str, ground: Ground, random: np.ra
     Args:
         track: Somebody walking.
         actor: Who that is.
-        kind: ``stand``, ``sit``, ``reach`` or ``write``.
+        kind: ``stand``, ``sit``, ``reach``, ``write`` or ``play`` (a real stretch on the spot).
         ground: The room so far.
         random: Source of everything that is drawn.
     """
     whole = np.concatenate([*track.parts, track.tail])
     recent = whole[-LOOK_BACK:]
     found = np.flatnonzero(grammar.landed(recent, facing(recent))[2:-1] >= 0)
-    if not len(found):
+    if not len(found) or (kind == "play" and not actor.scenes):
         return None
     now = len(whole) - len(recent) + int(found[-1]) + 3  # frames that are kept
     puppet = Puppet(actor.figure, whole[now - 2 : now])
     grammar.stop(puppet)
-    act = ACTS[kind](puppet, ground, random)
+    act = ACTS[kind](puppet, actor, ground, random)
     index = int(random.choice(actor.starts))
-    angle, shift = grammar.start(puppet, actor.gait, index, int(actor.landings[index]))
-    motion = puppet.motion(random)
+    angle, shift = grammar.start(act.puppet, actor.gait, index, int(actor.landings[index]))
+    pieces = [*act.before, (act.puppet.motion(random), False)]
     tail = placed(actor.gait.positions[index + 1 : index + 1 + BLEND].astype(np.float64), angle, shift)
-    path = np.concatenate([motion, tail])[None, :, PELVIS, :2]
-    if not ground.free(path, track.start + now)[0]:
+    motion = np.concatenate([*(positions for positions, _ in pieces), tail])
+    if not ground.free(motion[None, :, PELVIS, :2], track.start + now)[0]:
         return None
-    body = np.concatenate([whole[:now], motion, tail])
-    if not all(_fits(item, body, ground, TOUCHING[kind]) for item in act.things):
+    body = np.concatenate([whole[:now], motion])
+    if not all(fits(item, body, ground, TOUCHING[kind]) for item in act.things):
         return None
-    middle = index + 1 + MIDDLE
+    middle, made, at = index + 1 + MIDDLE, [], now
+    for positions, real in pieces:
+        made += [] if real else [(at, at + len(positions))]
+        at += len(positions)
+    real = any(real for _, real in pieces)
     events = tuple(
-        Event(name, -1, now + round(begin * FPS), now + round(end * FPS), thing_name, tuple(point.tolist()), out, True)
+        Event(name, -1, now + round(begin * FPS), now + round(end * FPS), thing_name, _point(point), out, not real)
         for name, begin, end, thing_name, point, out in act.events
     )
     return replace(
         track,
-        parts=(whole[:now], motion),
+        parts=(whole[:now], *(positions for positions, _ in pieces)),
         tail=tail,
         source=middle,
         look=float(actor.gait.looks[middle] + angle),
         stand=placed(actor.gait.pivots[middle], angle, shift),
         rate=0.0,
-        made=(*track.made, (now, now + len(motion))),
+        takes=(*track.takes, *([act.take] if act.take else [])),
+        made=(*track.made, *made),
         events=(*track.events, *events),
         things=(*track.things, *act.things),
     )
 
 
-def _fits(item: SceneObject, body: np.ndarray, ground: Ground, touching: tuple[int, ...]) -> bool:
+def _point(point: np.ndarray) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in point)
+    return x, y, z
+
+
+def fits(item: SceneObject, body: np.ndarray, ground: Ground, touching: tuple[int, ...]) -> bool:
     """Whether a thing is in nobody's way, the walls' included, and not in the body that uses it."""
     corners = item.corners[:, :2]
     if (np.abs(corners) > ground.half + 0.02).any():
@@ -140,7 +167,7 @@ def _fits(item: SceneObject, body: np.ndarray, ground: Ground, touching: tuple[i
 
 
 HAND = tuple(joint for hand in HANDS for joint in hand[1:])
-TOUCHING = {"stand": (), "sit": (PELVIS, *HIPS), "reach": HAND, "write": HAND}
+TOUCHING = {"stand": (), "play": (), "sit": (PELVIS, *HIPS), "reach": HAND, "write": HAND}
 """Joints that may touch what is used: pelvis and hips a seat, hands from the wrist on a counter or a board."""
 
 
@@ -158,16 +185,16 @@ def around(item: SceneObject) -> list[tuple[float, float, float]]:
     return [(float(x), float(y), radius) for x, y, _ in middles]
 
 
-def _stand(puppet: Puppet, ground: Ground, random: np.random.Generator) -> Act:
+def _stand(puppet: Puppet, _: Actor, __: Ground, random: np.random.Generator) -> Act:
     begin = puppet.time
     grammar.stand(puppet, random.uniform(1, 5))
     if random.random() < 0.6:
         grammar.turn(puppet, random.uniform(-1, 1) * 2.2)
     grammar.stand(puppet, random.uniform(1, 4))
-    return Act((("stand", begin, puppet.time, "", puppet.pelvis.last, float(puppet.look.last)),), ())
+    return Act(puppet, (("stand", begin, puppet.time, "", puppet.pelvis.last, float(puppet.look.last)),))
 
 
-def _sit(puppet: Puppet, ground: Ground, random: np.random.Generator) -> Act:
+def _sit(puppet: Puppet, _: Actor, ground: Ground, random: np.random.Generator) -> Act:
     grammar.turn(puppet, random.choice([-1, 1]) * random.uniform(1.4, np.pi))
     grammar.step_back(puppet, random.uniform(0.18, 0.25))
     kind_name = "stool" if random.random() < 0.25 else "chair"
@@ -179,13 +206,13 @@ def _sit(puppet: Puppet, ground: Ground, random: np.random.Generator) -> Act:
     name = ground.name(kind_name)
     seat = thing(kind, name, size, float(middle[0]), float(middle[1]), 0.0, look + np.pi, "caused")
     rest, leave = grammar.sit(puppet, float(size[2]), random.uniform(3, 14), random)
-    return Act((("sit", rest, leave, name, np.array([*place, size[2]]), look),), (seat,))
+    return Act(puppet, (("sit", rest, leave, name, np.array([*place, size[2]]), look),), (seat,))
 
 
 AT_COUNTER = ("counter", "sink", "dishwasher", "drawer", "table", "cupboard", "coffee machine", "microwave", "kettle")
 
 
-def _reach(puppet: Puppet, ground: Ground, random: np.random.Generator) -> Act:
+def _reach(puppet: Puppet, _: Actor, ground: Ground, random: np.random.Generator) -> Act:
     wall = _to_wall(puppet, ground)
     kind_name = str(random.choice(AT_COUNTER))
     if abs(wall[1]) < 1.9 and wall[0] < 1.5:
@@ -225,10 +252,10 @@ def _at_front(puppet: Puppet, kind_name: str, ground: Ground, random: np.random.
         for (begin, end), target in zip(held, targets, strict=True)
     )
     grammar.turn(puppet, random.choice([-1, 1]) * random.uniform(1.7, np.pi))
-    return Act(events, tuple(things))
+    return Act(puppet, events, tuple(things))
 
 
-def _write(puppet: Puppet, ground: Ground, random: np.random.Generator) -> Act:
+def _write(puppet: Puppet, _: Actor, ground: Ground, random: np.random.Generator) -> Act:
     wall = _to_wall(puppet, ground)
     if abs(wall[1]) < 1.9 and abs(wall[1]) > 0.1:
         grammar.turn(puppet, wall[1])
@@ -243,7 +270,60 @@ def _write(puppet: Puppet, ground: Ground, random: np.random.Generator) -> Act:
     touch = np.array([*(front - 0.06 * ahead), random.uniform(1.25, 1.5)])
     begin, end = grammar.write(puppet, touch, side, random.uniform(3, 8), random)
     grammar.turn(puppet, random.choice([-1, 1]) * random.uniform(1.7, np.pi))
-    return Act((("write", begin, end, name, touch, look + np.pi),), (board,))
+    return Act(puppet, (("write", begin, end, name, touch, look + np.pi),), (board,))
+
+
+def _play(puppet: Puppet, actor: Actor, _: Ground, random: np.random.Generator) -> Act:
+    """A real stretch on the spot between two synthetic ones that lead into it and out of it."""
+    name, scene = actor.scenes[int(random.integers(len(actor.scenes)))]
+    length = min(len(scene), int(random.integers(round(3 * FPS), round(14 * FPS))))
+    stands = _standing(scene, actor.figure.height)
+    first = int(random.choice(np.flatnonzero(stands[: len(scene) - length + 1])))
+    last = first + length - 1
+    last = int(np.flatnonzero(stands[: last + 1])[-1])
+    frames = scene[first : last + 1].astype(np.float64)
+    angle = float(puppet.look.last) - float(facing(frames[0]))
+    middle = frames[0, list(ANKLES), :2].mean(0)
+    frames = placed(frames, angle, grammar.centre_of(puppet) - turned(middle, angle))
+    for side in range(2):
+        ankle, tip = frames[0, ANKLES[side]], frames[0, TIPS[side]]
+        time = puppet.time
+        puppet.step(side, ankle[:2], float(toe_out(ankle, tip)), time, time + grammar.FOOTFALL_S)
+        puppet.time = time + grammar.FOOTFALL_S
+    end = float(np.ceil((puppet.time + 0.3) * FPS) / FPS)
+    puppet.key_pose(end, frames[:2], 0)
+    into = puppet.motion(random, 0.0)
+    onwards = Puppet(actor.figure, frames[-2:])
+    grammar.gather(onwards)
+    begin = len(into) / FPS
+    event = ("play", begin, begin + len(frames) / FPS, "", frames[0, PELVIS], float(puppet.look.last))
+    return Act(onwards, (event,), (), ((into, False), (frames[1:], True)), name)
+
+
+def _standing(positions: np.ndarray, height: float) -> np.ndarray:
+    """In which frames somebody ``(time, 31, 3)`` stands upright on both feet, ``(time,)`` bool."""
+    upright = np.abs(positions[:, PELVIS, 2] / height - 1) < 0.1
+    return foot_contact(positions).all(-1) & upright & (speed(positions[:, [PELVIS]])[:, 0] < 0.3)
+
+
+def on_the_spot(positions: np.ndarray, height: float) -> list[np.ndarray]:
+    """Stretches of a take that begin and end standing and stay within a circle of 0.8 m on the floor."""
+    found, first = [], 0
+    stands = _standing(positions, height)
+    low = smoothed(positions[:, FEET, 2].min(-1), 4) < 0.1
+    while first < len(positions) - 3 * FPS:
+        if not stands[first]:
+            first += 1
+            continue
+        away = np.linalg.norm(positions[first:, PELVIS, :2] - positions[first, PELVIS, :2], axis=-1)
+        leaves = np.flatnonzero((away > 0.8) | ~low[first:])
+        end = first + (int(leaves[0]) if len(leaves) else len(away))
+        rests = np.flatnonzero(stands[first:end])
+        last = first + int(rests[-1]) + 1
+        if last - first >= 3 * FPS:
+            found.append(positions[first:last])
+        first = max(end, first + 1)
+    return found
 
 
 def _to_wall(puppet: Puppet, ground: Ground) -> tuple[float, float]:
@@ -256,5 +336,5 @@ def _to_wall(puppet: Puppet, ground: Ground) -> tuple[float, float]:
     return float(gaps[side]), float(away)
 
 
-ACTS = {"stand": _stand, "sit": _sit, "reach": _reach, "write": _write}
+ACTS = {"stand": _stand, "sit": _sit, "reach": _reach, "write": _write, "play": _play}
 """The sentences of the grammar by the act in their middle."""

@@ -19,12 +19,12 @@ from motioncast.datasets.rooms.contacts import FPS
 from motioncast.datasets.rooms.events import Event
 from motioncast.datasets.rooms.footprint import footprint
 from motioncast.datasets.rooms.furnish import decoys, walls
-from motioncast.datasets.rooms.gait import gait_of
 from motioncast.datasets.rooms.ground import Ground
+from motioncast.datasets.rooms.solo import on_the_floor, solo
 from motioncast.datasets.rooms.stitch import placed
 from motioncast.datasets.rooms.tracks import Track, enter, walk_to
 
-WISHES = {"walk": 0.2, "stand": 0.12, "sit": 0.4, "reach": 0.2, "write": 0.08}
+WISHES = {"walk": 0.2, "stand": 0.08, "sit": 0.36, "reach": 0.16, "write": 0.08, "play": 0.12}
 """What somebody wants to do next, and how often."""
 
 LEAD = round(8 * FPS)
@@ -43,12 +43,14 @@ class Recipe:
         objects: Fewest and most decoys and used things, walls counted.
         seconds: Shortest and longest scene.
         couple: Share of rooms with the dancing couple.
+        solo: Share of people who are there with a whole take.
     """
 
     people: tuple[int, int] = (1, 8)
     objects: tuple[int, int] = (24, 32)
     seconds: tuple[float, float] = (24.0, 40.0)
     couple: float = 0.2
+    solo: float = 0.15
 
 
 RECIPES = {"train": Recipe(), "validation": Recipe(), "test": Recipe(people=(1, 16), objects=(30, 46))}
@@ -84,21 +86,18 @@ class Room:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Cast:
-    """Who can play in the rooms of one split."""
+    """Who can play in the rooms of one split: by subject who walks, whole takes on the floor, and couples."""
 
     actors: dict[int, Actor]
+    solos: tuple[Clip, ...]
     couples: tuple[Clip, ...]
 
 
 def cast(library: Library) -> Cast:
     """The walks and couples of a library."""
-    actors: dict[int, Actor] = {}
-    for subject, clips in library.singles.items():
-        gait = gait_of(clips)
-        actor = None if gait is None else actor_of(gait)
-        if actor is not None:
-            actors[subject] = actor
-    return Cast(actors, tuple(clip for clip in library.couples if len(clip.positions) >= SHORTEST_TRACK))
+    actors = {subject: actor for subject, clips in library.singles.items() if (actor := actor_of(clips))}
+    solos = tuple(clip for clips in library.singles.values() for clip in clips if on_the_floor(clip))
+    return Cast(actors, solos, tuple(clip for clip in library.couples if len(clip.positions) >= SHORTEST_TRACK))
 
 
 def rooms(data: str | Path, split: str, count: int, seed: int) -> Iterator[Room]:
@@ -142,7 +141,7 @@ def room(players: Cast, split: str, seed: int) -> Room:
             takes += [(clip.name,), (clip.name.replace("60_", "61_"),)]
             together.add((0, 1))
     while len(bodies) < people:
-        made = _walker(players, ground, random)
+        made = _somebody(players, recipe, ground, random)
         if made is None:
             break
         track, body = made
@@ -219,14 +218,22 @@ def _couple(clip: Clip, ground: Ground, random: np.random.Generator) -> list[np.
     return None
 
 
-def _walker(players: Cast, ground: Ground, random: np.random.Generator) -> tuple[Track, np.ndarray] | None:
-    """Somebody who comes in, acts here and there and leaves, or None where there is no way."""
+def _somebody(
+    players: Cast, recipe: Recipe, ground: Ground, random: np.random.Generator
+) -> tuple[Track, np.ndarray] | None:
+    """Somebody who comes in, acts here and there and leaves, or is there with a whole take; None without a way."""
     subjects = list(players.actors)
     for _ in range(TRIES):
-        actor = players.actors[subjects[int(random.integers(len(subjects)))]]
         start = int(random.integers(0, ground.frames - SHORTEST_TRACK))
         known = list(ground.things)
-        track = _way(actor, start, ground, random)
+        if players.solos and random.random() < recipe.solo:
+            clip = players.solos[int(random.integers(len(players.solos)))]
+            track = solo(clip, start, ground, random)
+            if track is not None:
+                ground.things += [circle for item in track.things for circle in around(item)]
+        else:
+            actor = players.actors[subjects[int(random.integers(len(subjects)))]]
+            track = _way(actor, start, ground, random)
         if track is not None:
             return track, _enrolled(track.positions, start, ground)
         ground.things = known
@@ -252,6 +259,10 @@ def _way(actor: Actor, start: int, ground: Ground, random: np.random.Generator) 
                 new = acted.things[len(track.things) :]
                 ground.things += [circle for item in new for circle in around(item)]
                 track = acted
+    if track.now < ground.frames:
+        x, y, angle = ground.doors[int(random.integers(len(ground.doors)))]
+        outside = np.array([x, y]) - 0.9 * np.array([np.cos(angle), np.sin(angle)])
+        track = walk_to(track, actor.gait, outside, ground, random, 0.5) or track
     return track if track.frames >= SHORTEST_TRACK else None
 
 

@@ -81,6 +81,17 @@ def stop(puppet: Puppet) -> None:
     _stand(puppet, goal, look, end)
 
 
+def gather(puppet: Puppet) -> None:
+    """From any standing pose to the neutral one, a step of each foot."""
+    look, centre, begin = float(puppet.look.last), centre_of(puppet), puppet.time
+    for side in range(2):
+        if side == 1:
+            puppet.settle(1, begin + 0.2)
+        time = begin + side * FOOTFALL_S
+        puppet.step(side, *stance(puppet.figure, centre, look, side), time, time + FOOTFALL_S)
+    _stand(puppet, centre + AHEAD_M * forwards(look), look, begin + 2 * FOOTFALL_S)
+
+
 def _stand(puppet: Puppet, goal: np.ndarray, look: float, end: float) -> None:
     puppet.pelvis.key(end, np.array([*goal, puppet.figure.height]))
     puppet.look.key(end, look)

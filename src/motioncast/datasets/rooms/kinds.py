@@ -39,6 +39,7 @@ class Kind:
 KINDS = {
     "chair": Kind("sittable", "box", (0.42, 0.42, 0.42), (0.48, 0.5, 0.48), "floor"),
     "stool": Kind("sittable", "cylinder", (0.34, 0.34, 0.44), (0.4, 0.4, 0.5), "floor"),
+    "bar stool": Kind("sittable", "cylinder", (0.34, 0.34, 0.7), (0.4, 0.4, 0.85), "floor"),
     "sofa": Kind("sittable", "box", (0.75, 1.5, 0.4), (0.9, 2.1, 0.45), "wall"),
     "table": Kind("table", "box", (0.7, 1.1, 0.7), (0.9, 1.8, 0.76), "floor"),
     "counter": Kind("cupboard", "box", (0.55, 0.8, 0.88), (0.62, 1.8, 0.94), "wall"),

@@ -2,6 +2,7 @@
 
 import { PerspectiveCamera, Vector3 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import type { Around } from "./extent";
 import type { State } from "./state";
 
 export class Eye {
@@ -11,8 +12,7 @@ export class Eye {
   private mode: State["camera"] | null = null;
   private free = 1; // the share of the height that nothing covers
 
-  /** `facing`: where the people look, as an angle in the floor; `apart`: how far they get from their middle. */
-  constructor(canvas: HTMLCanvasElement, private readonly facing: number, private readonly apart: number) {
+  constructor(canvas: HTMLCanvasElement, private readonly around: Around) {
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.maxPolarAngle = Math.PI / 2 - 0.02;
@@ -23,17 +23,20 @@ export class Eye {
   /** Goes to where a way of looking starts. */
   choose(mode: State["camera"], middle: Vector3): void {
     if (mode === this.mode) return;
+    const start = this.mode === null;
     this.mode = mode;
-    if (mode === "free") return;
-    const high = mode === "top" ? Math.max(this.apart + 0.5, 1.3) : 1.1 + 0.4 * this.apart;
-    const wide = Math.max(this.apart + 0.55, 1.1);
-    const room = Math.max(high / this.free, wide / this.camera.aspect) / Math.tan((this.camera.fov * Math.PI) / 360);
-    const angle = this.facing + (mode === "front" ? 0 : 0.65);
-    const lift = { follow: 0.28, front: 0.12, top: Math.PI / 2 - 0.001 }[mode];
-    const flat = Math.cos(lift) * room;
+    if (mode === "free" && !start) return;
+    const { apart, room, facing } = this.around;
+    const high = mode === "top" ? Math.max(apart, room, 0.8) + 0.5 : Math.max(1.1 + 0.4 * apart, room && 0.9 + 0.55 * room);
+    const wide = Math.max(apart + 0.55, 0.75 * room + 0.55, 1.1);
+    const far = Math.max(high / this.free, wide / this.camera.aspect) / Math.tan((this.camera.fov * Math.PI) / 360);
+    const angle = facing + (mode === "front" ? 0 : 0.65);
+    const aside = room ? 0.5 : 0.28; // furniture is looked at from higher up
+    const lift = { follow: aside, free: aside, front: room ? 0.35 : 0.12, top: Math.PI / 2 - 0.001 }[mode];
+    const flat = Math.cos(lift) * far;
     this.controls.target.copy(middle);
     this.camera.position.set(
-      middle.x + Math.cos(angle) * flat, middle.y + Math.sin(angle) * flat, middle.z + Math.sin(lift) * room,
+      middle.x + Math.cos(angle) * flat, middle.y + Math.sin(angle) * flat, middle.z + Math.sin(lift) * far,
     );
     this.controls.update();
   }

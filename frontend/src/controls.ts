@@ -1,7 +1,9 @@
 // Buttons, sliders and keys; they change the state and show it.
 
 import type { Description } from "./data";
-import { CAMERAS, DOUBTS, type Layer, LOOKS, SPEEDS, type State } from "./state";
+import { kindOf } from "./kinds";
+import { lanes, type Stay } from "./lanes";
+import { CAMERAS, DOUBTS, futuresOf, type Layer, LOOKS, SPEEDS, type State } from "./state";
 import { personColor } from "./theme";
 
 const get = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
@@ -9,13 +11,12 @@ const get = <T extends HTMLElement>(id: string) => document.getElementById(id) a
 export class Controls {
   private readonly slider = get<HTMLInputElement>("time");
   private readonly speed = get<HTMLSelectElement>("speed");
-  private readonly samples = get<HTMLInputElement>("samples");
   private readonly help = get<HTMLDialogElement>("help");
 
   /** `changed` is called after every change; a change of `jump` moved the playhead. */
   constructor(
-    private readonly about: Description, private readonly state: State, readonly first: number, readonly last: number,
-    private readonly changed: (jump: boolean) => void,
+    private readonly about: Description, private readonly stays: Stay[][], private readonly state: State,
+    readonly first: number, readonly last: number, private readonly changed: (jump: boolean) => void,
   ) {
     this.fill();
     this.listen();
@@ -47,18 +48,19 @@ export class Controls {
     this.changed(false);
   }
 
-  private choose<K extends "camera" | "look" | "doubt">(key: K, value: State[K]): void {
+  private choose<K extends "camera" | "look" | "doubt" | "future">(key: K, value: State[K]): void {
     this.state[key] = value;
     this.changed(false);
   }
 
-  private next<K extends "look" | "doubt">(key: K, choices: readonly State[K][]): void {
+  private next<K extends "look" | "doubt" | "future">(key: K, choices: readonly State[K][]): void {
     this.choose(key, choices[(choices.indexOf(this.state[key]) + 1) % choices.length]);
   }
 
   /** Everything that depends on the data alone. */
   private fill(): void {
     const { about } = this;
+    const begin = 1 - about.now, end = about.frames - about.now;
     document.title = about.title;
     get("title").textContent = about.title;
     get("model").textContent = about.card.name;
@@ -73,12 +75,16 @@ export class Controls {
     document.querySelector<HTMLElement>("[data-layer=truth]")!.hidden = about.truth === 0;
     get("doubts").hidden = about.levels.length === 0;
     get("looks").hidden = about.bones === 0;
-    get("draws").hidden = about.samples < 2;
+    get("inside").hidden = about.objects.length === 0;
+    this.futures();
+    this.kinds();
     get("levels").textContent = about.levels.map((level) => `${Math.round(Number(level) * 100)} %`).join(" and ");
-    this.samples.max = `${about.samples}`;
     Object.assign(this.slider, { min: `${this.first}`, max: `${this.last}`, step: `${1 / about.fps / 8}` });
-    this.slider.style.setProperty("--now", `${(-this.first / (this.last - this.first)) * 100}%`);
-    this.slider.style.setProperty("--ahead", this.stripes());
+    const gaps = this.stays.some((own) => own.length !== 1 || own[0][0] > begin || own[0][1] < end);
+    const count = Math.max(this.stays.length, 1);
+    const lane = gaps ? Math.min(Math.max(Math.floor(36 / count), 2), 6) : Math.max(Math.ceil(8 / count), 1);
+    this.slider.style.setProperty("--tall", `${lane * count}px`);
+    this.slider.style.setProperty("--lanes", lanes(this.stays, begin, end));
     for (const speed of SPEEDS) this.speed.append(new Option(`${speed}×`, `${speed}`));
     for (const warning of about.warnings) {
       const item = document.createElement("li");
@@ -91,6 +97,32 @@ export class Controls {
       card.data, card.licence,
     ].filter(Boolean).join(" · ");
     this.ticks();
+  }
+
+  /** A button for each future, and one for all at once; how probable they are is said where they differ. */
+  private futures(): void {
+    const { weights } = this.about;
+    get("futures").hidden = weights.length < 2;
+    const differ = Math.max(...weights) - Math.min(...weights) > 0.005;
+    for (const future of futuresOf(weights.length)) {
+      const button = document.createElement("button");
+      const weight = weights[Number(future) - 1];
+      button.textContent = future === "all" ? "All" : future;
+      button.dataset.set = `future:${future}`;
+      button.title = weight === undefined ? "All at once (a)" : `Next one (v); ${Math.round(weight * 100)} % probable`;
+      if (differ && weight !== undefined) button.append(small(`${Math.round(weight * 100)} %`));
+      get("futures").querySelector("div")!.append(button);
+    }
+  }
+
+  /** What the colours of things mean. */
+  private kinds(): void {
+    for (const category of new Set(this.about.objects.map((thing) => thing.category))) {
+      const item = document.createElement("li");
+      item.textContent = kindOf(category).word;
+      item.style.setProperty("--kind", kindOf(category).color);
+      get("kinds").append(item);
+    }
   }
 
   /** The colours of the people, side by side. */
@@ -125,7 +157,6 @@ export class Controls {
     press("more", () => { document.body.classList.toggle("open"); this.show(); });
     this.slider.addEventListener("input", () => this.stop(this.slider.valueAsNumber));
     this.speed.addEventListener("change", () => { this.state.speed = Number(this.speed.value); this.changed(false); });
-    this.samples.addEventListener("input", () => { this.state.samples = this.samples.valueAsNumber; this.changed(false); });
     for (const button of document.querySelectorAll<HTMLElement>("button[data-layer]")) {
       button.addEventListener("click", () => this.toggle(button.dataset.layer as Layer));
     }
@@ -153,6 +184,10 @@ export class Controls {
       t: () => this.toggle("truth"),
       p: () => this.toggle("paths"),
       w: () => this.toggle("stood"),
+      o: () => this.toggle("things"),
+      i: () => this.toggle("names"),
+      v: () => this.next("future", futuresOf(this.about.weights.length)),
+      a: () => this.choose("future", futuresOf(this.about.weights.length).at(-1)!),
       b: () => this.next("look", LOOKS),
       e: () => this.next("doubt", DOUBTS),
       l: () => get("loop").click(),
@@ -172,6 +207,8 @@ export class Controls {
     get("caption").textContent = [
       "Grey: what was seen. Colour: what motioncast expects.",
       about.truth ? "See\u2011through: what really happened." : "",
+      about.weights.length < 2 ? "" : state.future === "all"
+        ? `Thin figures: ${about.weights.length - 1} other futures.` : `Future ${state.future} of ${about.weights.length}.`,
       state.layers.has("stood") ? "Thin grey lines: where they stood at now." : "",
     ].filter(Boolean).join(" ");
     const whole = state.time.toFixed(2).replace("-", "−");
@@ -180,8 +217,10 @@ export class Controls {
     this.slider.valueAsNumber = state.time;
     this.slider.setAttribute("aria-valuetext", `${state.time.toFixed(2)} seconds from now`);
     this.speed.value = `${state.speed}`;
-    this.samples.valueAsNumber = state.samples;
-    get("drawn").textContent = `${state.samples} of ${about.samples}`;
+    [...get("people").children].forEach((item, person) => {
+      const frame = state.time * about.fps;
+      item.classList.toggle("away", !this.stays[person].some(([from, to]) => from - 0.5 <= frame && frame <= to + 0.5));
+    });
     get("play").classList.toggle("on", state.playing);
     get("play").setAttribute("aria-label", state.playing ? "Pause" : "Play");
     get("loop").setAttribute("aria-pressed", `${state.loop}`);
@@ -196,4 +235,10 @@ export class Controls {
       button.setAttribute("aria-pressed", `${state[key as "camera"] === value}`);
     }
   }
+}
+
+function small(text: string): HTMLElement {
+  const element = document.createElement("small");
+  element.textContent = text;
+  return element;
 }

@@ -1,6 +1,7 @@
 // What the page is about: one JSON block, and one block of packed numbers that it describes.
 
 export interface Person { id: string; guessed: boolean }
+export interface Thing { name: string; category: string; shape: "box" | "cylinder" | "points" | "mesh"; size: [number, number, number] }
 export interface Curve { name: string; kind: "model" | "baseline" | "radius"; times: number[]; errors: number[] }
 export interface Description {
   schema: string;
@@ -8,10 +9,11 @@ export interface Description {
   fps: number;
   now: number; // number of history frames; the last of them is time 0
   frames: number; // history and forecast together
-  samples: number;
+  weights: number[]; // of the futures; the most probable one comes first
   truth: number; // frames of the truth track, the last history frame included; 0: none
   skeleton: { label: string; names: string[]; bones: [number, number][]; hips: number[]; feet: number[]; ends: number[] };
   people: Person[];
+  objects: Thing[];
   levels: string[];
   curves: Curve[];
   curvesTitle: string;
@@ -27,14 +29,14 @@ export interface Page { about: Description; arrays: Map<string, Numbers> }
 
 export async function readPage(): Promise<Page> {
   const about = JSON.parse(document.getElementById("about")!.textContent!) as Description;
-  if (about.schema !== "motioncast.page/1") throw new Error(`this page cannot read ${about.schema}`);
+  if (about.schema !== "motioncast.page/2") throw new Error(`this page cannot read ${about.schema}`);
   const packed = Uint8Array.from(atob(document.getElementById("numbers")!.textContent!.trim()), (c) => c.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
   const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
   return { about, arrays: unpack(about, bytes) };
 }
 
-/** The inverse of `pack` in page.py: zigzag steps along the first axis, all low bytes before all high bytes. */
+/** The inverse of `pack` in packing.py: zigzag steps of steps along the first axis, low bytes before high bytes. */
 function unpack(about: Description, bytes: Uint8Array): Map<string, Numbers> {
   const half = bytes.length / 2;
   const arrays = new Map<string, Numbers>();
@@ -46,7 +48,7 @@ function unpack(about: Description, bytes: Uint8Array): Map<string, Numbers> {
     for (let index = 0; index < size; index++) {
       const zigzag = bytes[start + index] | (bytes[half + start + index] << 8);
       const step = (zigzag >>> 1) ^ -(zigzag & 1);
-      whole[index] = step + (index >= row ? whole[index - row] : 0);
+      whole[index] = step + (index >= row ? 2 * whole[index - row] : 0) - (index >= 2 * row ? whole[index - 2 * row] : 0);
     }
     arrays.set(name, { shape, values: Float32Array.from(whole, (value) => value * scale) });
     start += size;

@@ -1,7 +1,8 @@
 // Round marks: soft shadows on the floor, rings of doubt on the floor, balls of doubt around joints.
 
 import {
-  Color, DynamicDrawUsage, InstancedBufferAttribute, InstancedBufferGeometry, Mesh, PlaneGeometry, ShaderMaterial,
+  Color, CustomBlending, DynamicDrawUsage, InstancedBufferAttribute, InstancedBufferGeometry, Mesh, NormalBlending, OneFactor,
+  PlaneGeometry, ShaderMaterial,
 } from "three";
 
 const VERTEX = `
@@ -63,10 +64,11 @@ export class Discs extends Mesh<InstancedBufferGeometry, ShaderMaterial> {
       ball: { FILL: "0.12", WIDTH: "0.007", UPRIGHT: 1 },
     }[kind];
     super(geometry, new ShaderMaterial({
-      vertexShader: VERTEX, fragmentShader: FRAGMENT, defines, transparent: true, depthWrite: false,
+      vertexShader: VERTEX, fragmentShader: FRAGMENT, defines, depthWrite: false, transparent: kind !== "shadow",
+      blending: kind === "shadow" ? CustomBlending : NormalBlending, blendSrcAlpha: OneFactor,
     }));
     this.frustumCulled = false;
-    this.renderOrder = kind === "ball" ? 3 : 1;
+    this.renderOrder = { shadow: -0.5, ring: 1, ball: 3 }[kind]; // a foot that sinks in is not in its own shadow
   }
 
   begin(): void {

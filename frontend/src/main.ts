@@ -3,6 +3,7 @@
 import { Chart } from "./curve";
 import { Controls } from "./controls";
 import { readPage } from "./data";
+import { staysOf } from "./lanes";
 import { Stage } from "./stage";
 import { readState, writeState } from "./state";
 import { onThemeChange } from "./theme";
@@ -30,7 +31,7 @@ async function start(): Promise<void> {
   const page = await readPage();
   const { about } = page;
   const first = (1 - about.now) / about.fps, last = (about.frames - about.now) / about.fps;
-  const state = readState(first, last, about.samples);
+  const state = readState(first, last, about.weights.length);
   const canvas = document.getElementById("stage") as HTMLCanvasElement;
   const stage = new Stage(canvas, page);
   let stale = true, sudden = true, rewrite = 0;
@@ -44,7 +45,7 @@ async function start(): Promise<void> {
     clearTimeout(rewrite);
     if (!state.playing) rewrite = window.setTimeout(() => writeState(state), 250);
   };
-  const controls = new Controls(about, state, first, last, change);
+  const controls = new Controls(about, staysOf(page), state, first, last, change);
   const errors = document.getElementById("errors")!;
   const chart = about.curves.length
     ? new Chart(errors, about, (time) => { state.playing = false; controls.seek(time); })

@@ -2,7 +2,7 @@
 
 import {
   BufferAttribute, BufferGeometry, Color, CylinderGeometry, DynamicDrawUsage, IcosahedronGeometry, InstancedBufferAttribute,
-  InstancedMesh, LineBasicMaterial, LineSegments, Matrix4, Object3D, Quaternion, ShaderMaterial, Vector3,
+  InstancedMesh, LineBasicMaterial, LineSegments, Matrix4, NotEqualStencilFunc, Object3D, Quaternion, ShaderMaterial, Vector3,
 } from "three";
 import { LIGHT } from "./body";
 import type { Track } from "./track";
@@ -40,14 +40,21 @@ export class Sticks extends Object3D {
   private readonly from = new Vector3();
   private readonly to = new Vector3();
 
-  constructor(people: number, private readonly joints: number, private readonly bones: [number, number][], private readonly thick: number) {
+  /** `beside`: only beside solid bodies, not across them. */
+  constructor(
+    people: number, private readonly joints: number, private readonly bones: [number, number][], private readonly thick: number,
+    beside: boolean,
+  ) {
     super();
-    const material = new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT });
+    const material = new ShaderMaterial({
+      vertexShader: VERTEX, fragmentShader: FRAGMENT, stencilWrite: beside, stencilRef: 1, stencilFunc: NotEqualStencilFunc,
+    });
     const make = (geometry: BufferGeometry, count: number) => {
       geometry.setAttribute("tint", new InstancedBufferAttribute(new Float32Array(count * 3), 3));
       const mesh = new InstancedMesh(geometry, material, count);
       mesh.instanceMatrix.setUsage(DynamicDrawUsage);
       mesh.frustumCulled = false;
+      mesh.renderOrder = beside ? 1 : 0;
       this.add(mesh);
       return mesh;
     };

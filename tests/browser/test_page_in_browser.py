@@ -113,12 +113,11 @@ def test_it_plays(browser: chromium.Chromium, page: Path) -> None:
 
 
 def test_the_address_keeps_the_view(browser: chromium.Chromium, page: Path) -> None:
-    browser.open(page, "t=0.5&camera=top&look=bones&doubt=joints&layers=forecast&samples=2")
-    state = "(({camera, look, doubt, layers}) => [camera, look, doubt, [...layers]])(window.__mc.state)"
-    assert browser.evaluate(state) == ["top", "bones", "joints", ["forecast"]]
-    assert browser.evaluate("document.getElementById('drawn').textContent") == "2 of 3"
-    browser.open(page, "t=nonsense&camera=../../&layers=&samples=99")
-    assert browser.evaluate("window.__mc.state.camera") == "follow"
+    browser.open(page, "t=0.5&camera=top&look=bones&doubt=joints&layers=forecast&future=2")
+    state = "(({camera, look, doubt, layers, future}) => [camera, look, doubt, [...layers], future])(window.__mc.state)"
+    assert browser.evaluate(state) == ["top", "bones", "joints", ["forecast"], "2"]
+    browser.open(page, "t=nonsense&camera=../../&layers=&future=99")
+    assert browser.evaluate("[window.__mc.state.camera, window.__mc.state.future]") == ["follow", "all"]
     assert complaints(browser) == []
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import hashlib
-import json
 import re
 import zlib
 from dataclasses import replace
@@ -12,40 +11,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pages import CARD, forecast_of, read
 
-from motioncast.core.card import ModelCard
 from motioncast.core.forecast import Forecast
 from motioncast.core.scene import Scene
 from motioncast.core.skeletons import MRT15
 from motioncast.errors import OutputError, SceneError
-from motioncast.view.page import HISTORY_S, joint_errors, pack, page_html, write_page
-
-CARD = ModelCard("somoformer-fast", "SoMoFormer", "forecast", "mrt15", 15, 45, 15.0)
-
-
-def forecast_of(scene: Scene, now: int, samples: int = 1, **more: object) -> Forecast:
-    """A forecast that is wrong by 10 cm to the side, sample by sample 1 cm more."""
-    ahead = scene[now:].positions + np.array([0.1, 0, 0], np.float32)
-    drawn = np.stack([ahead + np.float32(0.01 * number) for number in range(samples)])
-    radius = {"0.5": np.full(ahead.shape[:1] + ahead.shape[2:3], 0.12), "0.9": np.full((len(ahead), 15), 0.4)}
-    return Forecast(drawn, scene[:now], scene.people, CARD, radius_m=radius, **more)  # pyright: ignore[reportArgumentType]
-
-
-def read(text: str) -> tuple[dict, dict[str, np.ndarray]]:
-    """Description and arrays of a page, unpacked without the help of the program."""
-    about = json.loads(re.search(r'id="about">(.*?)</script>', text)[1])  # pyright: ignore[reportOptionalSubscript]
-    numbers = re.search(r'id="numbers">(.*?)</script>', text)[1]  # pyright: ignore[reportOptionalSubscript]
-    raw = np.frombuffer(zlib.decompress(base64.b64decode(numbers)), np.uint8).astype(int)
-    words = raw[: len(raw) // 2] + 256 * raw[len(raw) // 2 :]
-    arrays, start = {}, 0
-    for entry in about["arrays"]:
-        size = int(np.prod(entry["shape"]))
-        part = words[start : start + size].reshape(entry["shape"])
-        steps = np.where(part % 2, -(part + 1) // 2, part // 2)
-        arrays[entry["name"]] = np.cumsum(steps, 0).astype(np.int16) * entry["scale"]
-        start += size
-    assert start == len(words)
-    return about, arrays
+from motioncast.view.contents import HISTORY_S
+from motioncast.view.curves import joint_errors
+from motioncast.view.packing import pack
+from motioncast.view.page import page_html, write_page
 
 
 def test_positions_are_exact_to_half_a_millimetre(walkers: Scene) -> None:
@@ -102,6 +77,26 @@ def test_three_people_for_250_frames_stay_below_a_megabyte() -> None:
     assert len(page_html(forecast, truth=scene[100:]).encode()) < 1_000_000
 
 
+def test_ten_seconds_of_three_people_in_four_futures_stay_below_a_megabyte_and_a_half() -> None:
+    from motioncast.core.skeletons import SMPL22
+
+    rng = np.random.default_rng(0)
+    time = np.arange(275)[:, None, None, None] / 25
+    start, phase = rng.normal(size=(4, 1, 3, 22, 3)), rng.uniform(0, 6, (4, 1, 3, 22, 3))
+    samples = start + 0.3 * np.sin(2 * np.pi * time + phase) + [1.2, 0, 0] * time
+    history = Scene(samples[0, :25], SMPL22, 25)
+    forecast = Forecast(samples[:, 25:], history, history.people, replace(CARD, fps=25.0))
+    assert len(page_html(forecast).encode()) < 1_500_000
+
+
+def test_a_minute_is_shown_with_fewer_frames_a_second(walkers: Scene) -> None:
+    ahead = np.resize(walkers.positions, (1, 1800, 2, 15, 3))
+    about, arrays = read(page_html(Forecast(ahead, walkers, walkers.people, CARD)))
+    assert (about["fps"], about["frames"] - about["now"]) == (15.0, 900)
+    shown = arrays["main/positions"][-1] + about["origin"]
+    np.testing.assert_allclose(shown, ahead[0, -1], atol=1e-3)
+
+
 def test_a_fast_capture_is_thinned_around_now(walkers: Scene) -> None:
     fast = Scene(np.repeat(walkers.positions, 4, 0), MRT15, 120.0)
     about, arrays = read(page_html(forecast_of(fast, 120)))
@@ -119,9 +114,10 @@ def test_a_long_history_is_cut(walkers: Scene) -> None:
 def test_the_most_probable_sample_leads(walkers: Scene) -> None:
     forecast = forecast_of(walkers, 30, samples=3, weights=np.array([0.2, 0.7, 0.1]))
     about, arrays = read(page_html(forecast))
-    assert about["samples"] == 3
-    for name, sample in (("main/positions", 1), ("sample/0", 0), ("sample/1", 2)):
-        shown = arrays[name][-30:] + about["origin"]
+    assert about["weights"] == pytest.approx([0.7, 0.2, 0.1])
+    for name, sample in (("main", 1), ("sample/0", 0), ("sample/1", 2)):
+        shown = arrays[f"{name}/positions"][-30:] + about["origin"]
+        assert len(arrays[f"{name}/rotations"]) == len(arrays[f"{name}/positions"]), "every future can carry bodies"
         np.testing.assert_allclose(shown, forecast.samples[sample], atol=1e-3)
 
 
@@ -178,7 +174,7 @@ def test_packing_holds_every_step_of_16_bits() -> None:
     raw = np.frombuffer(zlib.decompress(pack([array])), np.uint8).astype(int)
     words = raw[:4] + 256 * raw[4:]
     steps = np.where(words % 2, -(words + 1) // 2, words // 2)
-    np.testing.assert_array_equal(np.cumsum(steps).astype(np.int16), array[:, 0])
+    np.testing.assert_array_equal(np.cumsum(np.cumsum(steps)).astype(np.int16), array[:, 0])
 
 
 def test_the_file_is_whole_or_not_there(walkers: Scene, tmp_path: Path) -> None:

@@ -185,6 +185,11 @@ def around(item: SceneObject) -> list[tuple[float, float, float]]:
     return [(float(x), float(y), radius) for x, y, _ in middles]
 
 
+def yaw(item: SceneObject) -> float:
+    """How far a thing that stands upright is turned about the vertical, radians."""
+    return float(2 * np.arctan2(item.rotation[3], item.rotation[0]))
+
+
 def _stand(puppet: Puppet, _: Actor, __: Ground, random: np.random.Generator) -> Act:
     begin = puppet.time
     grammar.stand(puppet, random.uniform(1, 5))

@@ -110,7 +110,8 @@ def _writes(positions: np.ndarray, person: int, wrist: int) -> Iterator[Event]:
         if fits[piece].all() and _plane(path[piece, :2])[1] < 0.06:
             works[piece] = True
     for first, end in runs(works):
-        if (np.ptp(path[first:end], axis=0) < 0.3)[2] or np.ptp(path[first:end, :2], axis=0).max() < 0.6:
+        wide = np.ptp(path[first:end], axis=0)
+        if wide[2] < 0.3 or wide[:2].max() < 0.6 or np.ptp(positions[first:end, PELVIS, :2], axis=0).max() > 0.4:
             continue
         normal, _ = _plane(path[first:end, :2])
         body = positions[first:end, PELVIS, :2].mean(0) - path[first:end, :2].mean(0)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from motioncast.core.scene_object import SceneObject
+from motioncast.datasets.rooms.acts import yaw
 from motioncast.datasets.rooms.footprint import Footprint
 from motioncast.datasets.rooms.ground import DOOR_M, Ground
 from motioncast.datasets.rooms.kinds import HUNG_M, KINDS, WALL_HEIGHT_M, Kind, thing
@@ -16,7 +17,8 @@ from motioncast.datasets.rooms.kinds import HUNG_M, KINDS, WALL_HEIGHT_M, Kind, 
 DECOYS = 3
 """Decoys for each thing that is used."""
 
-TRIES = 25
+FILLERS = ("chair", "trash", "stool")
+TRIES = 40
 WALL_M = 0.1
 
 USUAL = (
@@ -73,6 +75,13 @@ def decoys(
         placed = _placed(name, ground.name(name), found, taken, ground.half, random)
         if placed is not None:
             found.append(placed)
+    # what found no place is made up for by small things
+    for name in (*FILLERS,) * count:
+        if len(found) >= count:
+            break
+        placed = _placed(name, ground.name(name), found, taken, ground.half, random)
+        if placed is not None:
+            found.append(placed)
     return found
 
 
@@ -123,6 +132,6 @@ def _on_top(
         top = float(base.position[2] + base.size[2] / 2)
         others = [other for other in found if abs(other.position[2] - other.size[2] / 2 - top) < 0.01]
         if all(np.hypot(other.position[0] - x, other.position[1] - y) > 0.4 for other in others):
-            angle = 2 * np.arctan2(base.rotation[3], base.rotation[0])
+            angle = yaw(base)
             return thing(kind, name, size, float(x), float(y), top, float(angle), "decoy")
     return None

@@ -15,9 +15,9 @@ from motioncast.datasets.rooms.events import Event, events_of
 from motioncast.datasets.rooms.ground import Ground
 from motioncast.datasets.rooms.kinds import HUNG_M, KINDS, thing
 from motioncast.datasets.rooms.stitch import placed
-from motioncast.datasets.rooms.tracks import Track
+from motioncast.datasets.rooms.tracks import SHORTEST, Track, whole_take
 
-SHORTEST, LONGEST = round(11 * FPS), round(60 * FPS)
+LONGEST = round(60 * FPS)
 TRIES = 20
 
 SAME_PLANE_M = 0.25
@@ -49,10 +49,7 @@ def solo(clip: Clip, start: int, ground: Ground, random: np.random.Generator) ->
         named, things = _things(moved, ground, random)
         if all(fits(item, body, ground, TOUCHING[kind]) for kind, item in things):
             used = tuple(item for _, item in things)
-            stand = body[-1, PELVIS, :2]
-            return Track(
-                start, body[-1:], -1, 0.0, stand, parts=(body,), takes=(clip.name,), events=tuple(named), things=used
-            )
+            return replace(whole_take(body, start, clip.name), events=tuple(named), things=used)
     return None
 
 

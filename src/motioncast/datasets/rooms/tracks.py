@@ -20,6 +20,9 @@ TURNS = np.radians([-75, -45, -20, 0, 20, 45, 75])
 
 FIRST, SECOND = (way.ravel() for way in np.meshgrid(TURNS, TURNS))
 
+SHORTEST = round(11 * FPS)
+"""Frames of the shortest track: a window of eleven seconds."""
+
 MOST = round(2.4 * FPS)
 """Frames of the longest piece of a walk."""
 
@@ -76,6 +79,12 @@ class Track:
     def positions(self) -> np.ndarray:
         """All frames so far, ``(time, 31, 3)``."""
         return np.concatenate(self.parts)
+
+
+def whole_take(positions: np.ndarray, start: int, name: str) -> Track:
+    """A track that is one stretch of one take, ``(time, 31, 3)``, as it was recorded."""
+    last = positions[-1:]
+    return Track(start, last, -1, 0.0, last[0, PELVIS, :2], parts=(positions,), takes=(name,))
 
 
 def enter(gait: Gait, door: np.ndarray, start: int, random: np.random.Generator) -> Track:

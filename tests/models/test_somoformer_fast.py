@@ -8,7 +8,7 @@ import pytest
 torch = pytest.importorskip("torch")
 
 from motioncast.models.somoformer_fast import SoMoFormerFast, SoMoFormerFastConfig  # noqa: E402
-from motioncast.nn.frames import turn  # noqa: E402
+from motioncast.nn.frames import TURNING_BACK, stand, turn  # noqa: E402
 from motioncast.nn.losses import with_true_lengths  # noqa: E402
 
 pytestmark = pytest.mark.torch
@@ -49,10 +49,14 @@ def test_a_mirrored_scene_has_the_mirrored_answer(model: SoMoFormerFast, history
     symmetric.load_state_dict(model.state_dict())
     seen = SEEN.clone()
     seen[:, :4, 1, 3] = False
+
+    def mirror(motion: torch.Tensor) -> torch.Tensor:
+        return motion[..., model.order, :] * torch.tensor([-1.0, 1.0, 1.0])
+
     answer = symmetric(history, seen)
-    image = symmetric(symmetric.mirror(history), seen[..., symmetric.order])
-    torch.testing.assert_close(image, symmetric.mirror(answer), atol=1e-5, rtol=0)
-    expected = (model(history, seen) + model.mirror(model(model.mirror(history), seen[..., model.order]))) / 2
+    image = symmetric(mirror(history), seen[..., model.order])
+    torch.testing.assert_close(image, mirror(answer), atol=1e-5, rtol=0)
+    expected = (model(history, seen) + mirror(model(mirror(history), seen[..., model.order]))) / 2
     torch.testing.assert_close(answer, expected, atol=1e-5, rtol=0)
 
 
@@ -81,6 +85,18 @@ def test_attention_can_be_asked_for(model: SoMoFormerFast, history: torch.Tensor
     torch.testing.assert_close(asked, model(history, SEEN), atol=1e-5, rtol=0)
 
 
+def test_tokens_of_others_are_those_of_the_motion_as_seen(model: SoMoFormerFast, history: torch.Tensor) -> None:
+    origin, heading = stand(history[:, -1], model.skeleton)
+    seen = turn(history[:, :, None] - origin[:, None, :, None, None], heading[:, None, :, None, None], back=True)
+    steps = (seen[:, 1:] - seen[:, :-1]) * model.pace
+    features = torch.cat([torch.tanh(seen / 3), steps, torch.tanh(seen[:, -1:])], 1)  # B, T, i, k, J, 3
+    whole = model.see(features.permute(0, 2, 3, 1, 4, 5).flatten(3)) + model.other
+    share = torch.cat([heading, torch.ones_like(heading[..., :1])], -1).flatten(0, 1)
+    back = (share @ TURNING_BACK.flatten(1)).view(-1, 3, 3)
+    split = model.others_as_seen(history.permute(0, 2, 4, 3, 1), origin.flatten(0, 1), share, back)
+    torch.testing.assert_close(split, whole.flatten(0, 1), atol=1e-5, rtol=0)
+
+
 def test_turn_is_a_rotation_about_the_vertical() -> None:
     quarter = torch.tensor([0.0, 1.0])
     torch.testing.assert_close(turn(torch.tensor([1.0, 0.0, 5.0]), quarter), torch.tensor([0.0, 1.0, 5.0]))
@@ -98,10 +114,11 @@ def test_true_lengths() -> None:
 def test_a_tempered_model_believes_less_of_its_path_and_keeps_its_step(history: torch.Tensor) -> None:
     torch.manual_seed(0)
     tempered = SoMoFormerFast(SoMoFormerFastConfig(path_share=0.5, seam_share=1.0, **SMALL)).eval()
-    change, step = torch.randn(2, 45, 3, 15, 3), torch.randn(2, 1, 3, 15, 3)
+    change, step = torch.randn(6, 3, 15, 45), torch.randn(6, 3, 15, 1)
     answer = tempered.tempered(change, step)
-    torch.testing.assert_close(answer[:, :1], step)
-    torch.testing.assert_close(answer[:, -1, :, 0], 0.5 * change[:, -1, :, 0], atol=1e-4, rtol=0)
+    torch.testing.assert_close(answer[..., :1], step)
+    answer, change = answer[..., -1], change[..., -1]
+    torch.testing.assert_close(answer[..., 0], 0.5 * change[..., 0], atol=1e-4, rtol=0)
     torch.testing.assert_close(  # the pose within the body is left alone
-        answer[:, -1] - answer[:, -1, :, :1], change[:, -1] - change[:, -1, :, :1], atol=1e-4, rtol=0
+        answer - answer[..., :1], change - change[..., :1], atol=1e-4, rtol=0
     )

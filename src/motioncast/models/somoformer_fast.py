@@ -13,7 +13,9 @@ Joints as tokens, the padded trajectory, the residual in DCT space and one pass 
 - A trained model answers with the mean of the scene's future and of its mirror image's, mirrored back: left and
   right are alike to it, exactly, and what it made up about one of them is halved.
 
-Shapes: B scenes, H frames of history, F frames of horizon, P people, J joints, d channels.
+Shapes: B scenes, H frames of history, F frames of horizon, P people, J joints, d channels. Inside, motion has its
+coordinates before its joints and its frames last, so that long rows of numbers are computed with alike, and a person
+of a scene is a row of its own.
 """
 
 from __future__ import annotations
@@ -22,11 +24,12 @@ from dataclasses import dataclass
 
 import torch
 from torch import Tensor, nn
+from torch.nn import functional
 
 from motioncast.core.skeletons import SKELETONS
 from motioncast.nn.attention import EncoderLayer
 from motioncast.nn.dct import dct_matrix, exact
-from motioncast.nn.frames import root_joints, stand, to_own, to_world, turn
+from motioncast.nn.frames import TURNING_BACK, root_joints, stand
 from motioncast.nn.gaps import fill_gaps
 from motioncast.nn.losses import LIMBS, mean_distance, with_true_lengths
 
@@ -76,6 +79,8 @@ class SoMoFormerFast(nn.Module):
     """World-frame history with masks in, world-frame future of all people out."""
 
     answer: Tensor
+    flip: Tensor
+    turns: Tensor
 
     def __init__(self, config: SoMoFormerFastConfig) -> None:
         super().__init__()
@@ -86,6 +91,7 @@ class SoMoFormerFast(nn.Module):
         self.limbs = [(joint, parent) for joint, parent in skeleton.bones if skeleton.names[joint].endswith(LIMBS)]
         self.root = root_joints(skeleton)
         self.order = list(skeleton.mirror())
+        self.pace = config.fps / 2  # steps in units of 2 m/s
         h, d = config.history, config.width
         self.embed = nn.Linear(3 + 3 * h + 3 * (h - 1) + h, d)
         self.joint = nn.Parameter(torch.randn(self.joints, d) * 0.02)
@@ -102,6 +108,8 @@ class SoMoFormerFast(nn.Module):
         # coefficients -> the future part of the padded trajectory's change
         answer = dct_matrix(h + config.horizon)[: config.coefficients, h:]
         self.register_buffer("answer", answer, persistent=False)
+        self.register_buffer("flip", torch.tensor([-1.0, 1.0, 1.0])[:, None, None], persistent=False)
+        self.register_buffer("turns", TURNING_BACK, persistent=False)
 
     def forward(self, history: Tensor, observed: Tensor, weights: list[Tensor] | None = None) -> Tensor:
         """The future of all people.
@@ -115,38 +123,40 @@ class SoMoFormerFast(nn.Module):
         Returns:
             ``(B, F, P, J, 3)`` metres, world.
         """
-        history = fill_gaps(history, observed)
-        if self.training or not self.config.mirrored:
-            return self.future(history, observed, weights)
-        both = torch.cat([history, self.mirror(history)]), torch.cat([observed, observed[..., self.order]])
-        future, image = self.future(*both, weights).chunk(2)
-        return (future + self.mirror(image)) / 2
+        motion = fill_gaps(history, observed).permute(0, 2, 4, 3, 1)
+        mirrored = self.config.mirrored and not self.training
+        if mirrored:
+            motion = torch.cat([motion, self.mirror(motion)])
+            observed = torch.cat([observed, observed[..., self.order]])
+        future, coordinates = self.future(motion, observed, weights), (3, self.joints, self.config.horizon)
+        if mirrored:
+            future, image = future.view(2, -1, *coordinates).unbind()
+            future = (future + self.mirror(image)) / 2
+        return future.view(-1, history.shape[2], *coordinates).permute(0, 4, 1, 3, 2)
 
     def mirror(self, motion: Tensor) -> Tensor:
-        """Motion ``(..., J, 3)`` as a mirror shows it: x turned over, left and right joints exchanged."""
-        x, y, z = motion[..., self.order, :].unbind(-1)
-        return torch.stack([-x, y, z], -1)
+        """Motion ``(..., 3, J, T)`` as a mirror shows it: x turned over, left and right joints exchanged."""
+        return motion[..., self.order, :] * self.flip
 
-    def future(self, history: Tensor, observed: Tensor, weights: list[Tensor] | None = None) -> Tensor:
-        """The future of all people from a history without gaps; shapes as in :meth:`forward`."""
-        batch, _, people = history.shape[:3]
-        origin, heading = stand(history[:, -1], self.skeleton)
-        own = to_own(history, origin, heading)
-        tokens = self.own_tokens(own, observed)
-        others = self.others_as_seen(history, origin, heading)
-        tokens = torch.cat([tokens, others], 2).flatten(0, 1)
-        bias = self.presence(observed)
+    def future(self, motion: Tensor, observed: Tensor, weights: list[Tensor] | None = None) -> Tensor:
+        """The future ``(B * P, 3, J, F)`` of all people from a motion ``(B, P, 3, J, H)`` without gaps."""
+        h, f, joints = self.config.history, self.config.horizon, self.joints
+        rows = motion.reshape(-1, 3, joints, h)
+        origin, heading = stand(rows[..., -1].transpose(1, 2), self.skeleton)
+        share = torch.cat([heading, torch.ones_like(heading[:, :1])], 1)  # of each matrix of the turn
+        back = exact(share, self.turns.flatten(1)).view(-1, 3, 3)
+        own = exact(back, (rows - origin[..., None, None]).reshape(-1, 3, joints * h)).view(-1, 3, joints, h)
+        others = self.others_as_seen(motion, origin, share, back)
+        tokens, bias = torch.cat([self.own_tokens(own, observed), others], 1), self.presence(observed)
         for number, layer in enumerate(self.layers, 1):
             last = number == len(self.layers)  # whose tokens of other people nobody reads
-            tokens = layer(tokens, bias, weights, self.joints if last else None)
-        joints = self.norm(tokens).view(batch, people, self.joints, -1)
-        coefficients = self.head(joints).view(batch, people, self.joints, 3, self.config.coefficients)
-        change = exact(coefficients, self.answer)
-        change = change.permute(0, 4, 1, 2, 3)
+            tokens = layer(tokens, bias, weights, joints if last else None)
+        coefficients = self.head(self.norm(tokens).flatten(0, 1)).view(-1, joints, 3, self.config.coefficients)
+        change = exact(coefficients.transpose(1, 2), self.answer)
         if not self.training:
-            change = self.tempered(change, own[:, -1:] - own[:, -2:-1])
-        future = own[:, -1:] + change
-        return to_world(future, origin, heading)
+            change = self.tempered(change, own[..., -1:] - own[..., -2:-1])
+        future = (own[..., -1:] + change).view(-1, 3, joints * f)
+        return (exact(back.transpose(1, 2), future) + origin[..., None]).view(-1, 3, joints, f)
 
     def tempered(self, change: Tensor, step: Tensor) -> Tensor:
         """The change of a trained model, less sure of itself where validation takes say so.
@@ -155,13 +165,13 @@ class SoMoFormerFast(nn.Module):
         quite go on with the last one seen; that disagreement is made good in part and fades within half a second.
 
         Args:
-            change: Displacement from the last pose, ``(B, F, P, J, 3)``.
-            step: The last step that was seen, ``(B, 1, P, J, 3)``.
+            change: Displacement from the last pose, ``(B * P, 3, J, F)``.
+            step: The last step that was seen, ``(B * P, 3, J, 1)``.
         """
         path = change[..., self.root, :].mean(-2, keepdim=True)
         change = change - (1 - self.config.path_share) * path
-        fading = SEAM_FADES ** torch.arange(change.shape[1], device=change.device, dtype=change.dtype)
-        return change + self.config.seam_share * (step - change[:, :1]) * fading[:, None, None, None]
+        fading = SEAM_FADES ** torch.arange(self.config.horizon, device=change.device, dtype=change.dtype)
+        return change + self.config.seam_share * (step - change[..., :1]) * fading
 
     def loss(self, answer: Tensor, truth: Tensor, observed: Tensor) -> Tensor:
         """Mean distance of the joints, the error that is reported, with bones as they came and with true ones."""
@@ -169,20 +179,46 @@ class SoMoFormerFast(nn.Module):
         return 0.5 * (mean_distance(answer, truth, observed) + mean_distance(rigid, truth, observed))
 
     def own_tokens(self, own: Tensor, observed: Tensor) -> Tensor:
-        """A token a joint from its trajectory in the person's frame, ``(B, P, J, d)``."""
-        last = own[:, -1:]
-        steps = (own[:, 1:] - own[:, :-1]) * (self.config.fps / 2)  # in units of 2 m/s
-        features = torch.cat([last, (own - last) * 2, steps], 1).permute(0, 2, 3, 1, 4).flatten(3)
-        return self.embed(torch.cat([features, observed.permute(0, 2, 3, 1).float()], -1)) + self.joint
+        """A token a joint from its trajectory in the person's frame, ``(B * P, J, d)``."""
+        h, last = self.config.history, own[..., -1:]
+        steps = (own[..., 1:] - own[..., :-1]) * self.pace
+        features = torch.cat([last, (own - last) * 2, steps], -1).permute(0, 2, 3, 1).reshape(-1, 6 * h)
+        seen = observed.permute(0, 2, 3, 1).reshape(-1, h).float()
+        return self.embed(torch.cat([features, seen], -1)).view(-1, self.joints, self.config.width) + self.joint
 
-    def others_as_seen(self, history: Tensor, origin: Tensor, heading: Tensor) -> Tensor:
-        """A token for each person k as person i sees it, ``(B, P of i, P of k, d)``."""
-        apart = history[:, :, None] - origin[:, None, :, None, None]  # B, H, i, k, J, 3
-        seen = turn(apart, heading[:, None, :, None, None], back=True)
-        steps = (seen[:, 1:] - seen[:, :-1]) * (self.config.fps / 2)
+    def others_as_seen(self, motion: Tensor, origin: Tensor, share: Tensor, back: Tensor) -> Tensor:
+        """A token for each person k as person i sees it, ``(B * P of i, P of k, d)``.
+
+        A pair needs a product of its own for where k is, which goes through a tanh. The steps of k are only turned,
+        and a turn is a weighted sum: they are multiplied once a person, and summed for each pair.
+
+        Args:
+            motion: ``(B, P, 3, J, H)``.
+            origin: Where each person stands, ``(B * P, 3)``.
+            share: What each of the turning matrices counts for it, ``(B * P, 3)``.
+            back: Their sum, ``(B * P, 3, 3)``.
+        """
+        people, h, n, width = motion.shape[1], self.config.history, self.joints, self.config.width
+        first, rest = self.see[0], self.see[1:]
+        assert isinstance(first, nn.Linear)
+        weight = first.weight.view(width, 2 * h, n, 3).transpose(1, 3)
+        of_path, of_steps, of_pose = (part.flatten(1) for part in weight.split([h, h - 1, 1], 3))
         # far people differ by their bearing, not by kilometres
-        features = torch.cat([torch.tanh(seen / 3), steps, torch.tanh(seen[:, -1:])], 1)
-        return self.see(features.permute(0, 2, 3, 1, 4, 5).flatten(3)) + self.other
+        path = torch.tanh(self.seen(motion.reshape(-1, people, 3, n * h), origin, back / 3))
+        pose = torch.tanh(self.seen(motion[..., -1], origin, back))
+        steps = ((motion[..., 1:] - motion[..., :-1]) * self.pace).reshape(-1, 3, n * (h - 1))
+        turned = exact(self.turns.flatten(0, 1), steps).view(-1, 3 * n * (h - 1))
+        parts = functional.linear(turned, of_steps).view(-1, people, 3, width).transpose(1, 2)
+        moving = (share.reshape(-1, people, 3) @ parts.reshape(-1, 3, people * width)).view(-1, width)
+        tokens = functional.linear(path, of_path, first.bias) + functional.linear(pose, of_pose) + moving
+        return rest(tokens).view(-1, people, width) + self.other
+
+    def seen(self, places: Tensor, origin: Tensor, back: Tensor) -> Tensor:
+        """Places ``(B, P of k, 3, n)`` as each person i sees them, ``(B * P of i * P of k, 3 n)``."""
+        people, count = places.shape[1], places.shape[3]
+        apart = places.transpose(1, 2).reshape(-1, 1, 3, people * count) - origin.reshape(-1, people, 3, 1)
+        turned = exact(back, apart.reshape(-1, 3, people * count)).view(-1, 3, people, count)
+        return turned.transpose(1, 2).reshape(-1, 3 * count)
 
     def presence(self, observed: Tensor) -> Tensor:
         """Added to the scores: nobody attends to absent people, nor to itself as another, ``(B * P, 1, 1, J + P)``."""

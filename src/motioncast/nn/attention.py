@@ -20,7 +20,7 @@ class EncoderLayer(nn.Module):
 
     def __init__(self, width: int, heads: int, feed_forward: int, dropout: float, *, norm_first: bool = False) -> None:
         super().__init__()
-        self.heads, self.norm_first, self.dropout = heads, norm_first, dropout
+        self.width, self.heads, self.norm_first, self.dropout = width, heads, norm_first, dropout
         self.project = nn.Linear(width, 3 * width)
         self.merge = nn.Linear(width, width)
         self.rise = nn.Linear(width, feed_forward)
@@ -40,26 +40,34 @@ class EncoderLayer(nn.Module):
             weights: If given, the attention weights ``(batch, heads, tokens, tokens)`` are appended to it.
             first: Update and return only so many first tokens, where nobody reads the others.
         """
-        kept = tokens[:, :first]
+        count = tokens.shape[1] if first is None else first
+        kept = self.rows(tokens[:, :first])
         if self.norm_first:
             kept = kept + self.drop(self.attend(self.norm_attention(tokens), bias, weights, first))
-            return kept + self.drop(self.fall(self.drop(functional.gelu(self.rise(self.norm_feed(kept))))))
-        kept = self.norm_attention(kept + self.drop(self.attend(tokens, bias, weights, first)))
-        return self.norm_feed(kept + self.drop(self.fall(self.drop(torch.relu(self.rise(kept))))))
+            kept = kept + self.drop(self.fall(self.drop(functional.gelu(self.rise(self.norm_feed(kept))))))
+        else:
+            kept = self.norm_attention(kept + self.drop(self.attend(tokens, bias, weights, first)))
+            kept = self.norm_feed(kept + self.drop(self.fall(self.drop(torch.relu(self.rise(kept))))))
+        return kept.view(-1, count, self.width)
+
+    def rows(self, tokens: Tensor) -> Tensor:
+        """Tokens of the whole batch as rows of one matrix: in a graph a product and its bias are then one step."""
+        return tokens.reshape(-1, self.width)
 
     def attend(self, tokens: Tensor, bias: Tensor, weights: list[Tensor] | None, first: int | None) -> Tensor:
-        """Multi-head self-attention of the first tokens."""
-        batch, count, width = tokens.shape
+        """Multi-head self-attention of the first tokens, as rows."""
+        each = self.width // self.heads
+        project = zip(self.project.weight.split(self.width), self.project.bias.split(self.width), strict=True)
         query, key, value = (
-            self.project(tokens).view(batch, count, 3, self.heads, width // self.heads).permute(2, 0, 3, 1, 4)
+            functional.linear(self.rows(read), *part).view(-1, read.shape[1], self.heads, each).transpose(1, 2)
+            for read, part in zip((tokens[:, :first], tokens, tokens), project, strict=True)
         )
-        query = query[:, :, :first]
         if weights is None:
             mixed = functional.scaled_dot_product_attention(
-                query, key, value, attn_mask=bias, dropout_p=self.dropout if self.training else 0.0
+                query, key, value, attn_mask=bias, dropout_p=self.dropout if self.training else 0.0, scale=each**-0.5
             )
         else:
-            scores = query @ key.transpose(-1, -2) * (width // self.heads) ** -0.5 + bias
+            scores = query @ key.transpose(-1, -2) * each**-0.5 + bias
             weights.append(scores.softmax(-1))
             mixed = weights[-1] @ value
-        return self.merge(mixed.transpose(1, 2).flatten(2))
+        return self.merge(self.rows(mixed.transpose(1, 2)))

@@ -29,20 +29,19 @@ def stand(pose: Tensor, skeleton: Skeleton) -> tuple[Tensor, Tensor]:
     """Where each person stands, and its heading.
 
     Args:
-        pose: ``(B, P, J, 3)`` metres, z up: one frame.
+        pose: ``(..., J, 3)`` metres, z up: one frame.
         skeleton: Which joint is which.
 
     Returns:
-        The root's position ``(B, P, 3)`` and a horizontal unit vector ``(B, P, 2)``, at right angles to hips and
+        The root's position ``(..., 3)`` and a horizontal unit vector ``(..., 2)``, at right angles to hips and
         shoulders.
     """
-    origin = pose[:, :, root_joints(skeleton)].mean(2)
-    across = sum(pose[:, :, left] - pose[:, :, right] for left, right in side_joints(skeleton))
-    assert isinstance(across, Tensor)  # there are sides: the sum is not its start, 0
-    forward = torch.stack([across[..., 1], -across[..., 0]], -1)
+    left, right = (list(side) for side in zip(*side_joints(skeleton), strict=True))
+    origin = pose[..., root_joints(skeleton), :].mean(-2)
+    across = (pose[..., left, :] - pose[..., right, :]).sum(-2)
+    forward = across[..., [1, 0]] * across.new_tensor([1.0, -1.0])
     length = forward.norm(dim=-1, keepdim=True)
-    ahead = torch.cat([torch.ones_like(length), torch.zeros_like(length)], -1)
-    return origin, torch.where(length > 1e-3, forward / length.clamp(min=1e-3), ahead)
+    return origin, torch.where(length > 1e-3, forward / length.clamp(min=1e-3), forward.new_tensor([1.0, 0.0]))
 
 
 def turn(vectors: Tensor, heading: Tensor, *, back: bool = False) -> Tensor:
@@ -50,6 +49,16 @@ def turn(vectors: Tensor, heading: Tensor, *, back: bool = False) -> Tensor:
     cosine, sine = heading[..., 0], -heading[..., 1] if back else heading[..., 1]
     x, y, z = vectors.unbind(-1)
     return torch.stack([cosine * x - sine * y, sine * x + cosine * y, z], -1)
+
+
+TURNING_BACK = torch.tensor(
+    [
+        [[1.0, 0, 0], [0, 1, 0], [0, 0, 0]],
+        [[0.0, 1, 0], [-1, 0, 0], [0, 0, 0]],
+        [[0.0, 0, 0], [0, 0, 0], [0, 0, 1]],
+    ]
+)
+"""The cosine of a heading times the first matrix, its sine times the second, and the third: the turn back by it."""
 
 
 def to_own(motion: Tensor, origin: Tensor, heading: Tensor) -> Tensor:

@@ -17,7 +17,7 @@ def fill_gaps(history: Tensor, observed: Tensor) -> Tensor:
     """
     now = observed[:, -1, ..., None].float()
     middle = (history[:, -1] * now).sum(2, keepdim=True) / now.sum(2, keepdim=True).clamp(min=1)
-    frames = observed.shape[1]
+    frames = int(observed.shape[1])  # a plain number, so that what follows from it is a constant of a graph
     seen, number = observed.float(), torch.arange(1, frames + 1, device=history.device).float()
     until = (number[:, None] >= number).float()
     # the number of the last frame up to each one in which the joint was seen, from 1; 0 where there is none

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from motioncast.benchmarks.result import load_result, save_result
-from motioncast.benchmarks.rooms.run import forecast_rooms, real_words, result_of
+from motioncast.benchmarks.rooms.run import forecast_rooms, real_words, result_of, score
 from motioncast.benchmarks.rooms.scoring import figures_of
 from motioncast.benchmarks.rooms.tally import Mean, Pooled, Ratio, Tally, rows
 from motioncast.benchmarks.rooms.windows import PROTOCOL, RoomWindow, checksum, digest, manifest, windows_of_room
@@ -36,7 +36,13 @@ def made_up_room(seed: int = 0) -> Room:
     scene = replace(scene, observed=observed, objects=THINGS, floor_m=0.0, source=f"room {seed}")
     events = (Event("sit", 0, 100, 150, "stool of person 2"), Event("sit", 2, 60, 90, "stool 9"))
     pairs = {(0, 1): "recorded", (0, 2): "composed", (1, 2): "composed"}
-    return Room(scene, events, pairs, np.zeros(observed.shape[:2], bool), ((),) * 4, seed, "test")
+    synthetic = np.zeros(observed.shape[:2], bool)
+    synthetic[90:160, 0] = seed == 1
+    takes = (("01_01",), ("01_01", f"02_0{seed}"), ("09_09",), ())
+    return Room(
+        scene=scene, events=events, pairs=pairs, synthetic=synthetic, takes=takes, half=np.ones(2), seed=seed,
+        split="test",
+    )  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -112,11 +118,24 @@ def test_a_result_ends_with_the_ratio_to_standing_still_and_can_be_written(
     result = result_of(guess.card, windows, forecast_rooms(guess, windows), None)
     assert result.ratio.metric == "ratio_to_zero_velocity"
     assert result.ratio.value == pytest.approx(1.0)
-    assert result.takes == 3
+    assert result.takes == 4  # 01_01 in all, another in each; nobody of 09_09 is there
+    assert result.independent == "3 rooms"
     assert load_result(save_result(result, tmp_path)).rows == result.rows
     truth = result_of(guess.card, windows, futures(windows), None)
     assert truth.ratio.value == pytest.approx(0, abs=1e-9)
     assert truth.protocol == result.protocol
+
+
+def test_who_is_moved_by_inverse_kinematics_counts_only_in_figures_that_say_so(windows: list[RoomWindow]) -> None:
+    assert [window.synthetic.tolist() for window in windows] == [[False, False], [True, False], [False, False]]
+    assert not windows[1].recorded().seen[:, 0].any()
+    assert windows[1].recorded().goals == ()
+    astray = [window.future[None] + window.synthetic[:, None, None] * np.float32(5.0) for window in windows]
+    found = {(row.metric, row.horizon_s): row for row in score(windows, astray)}
+    assert found["mpjpe_at", 1.0].value == 0
+    assert found["mpjpe_at_with_synthetic", 1.0].value == pytest.approx(5000 * np.sqrt(3) / 6, rel=1e-4)
+    assert found["ratio_to_zero_velocity", 10.0].value == 0
+    assert (found["goal_chance", 10.0].n, found["goal_chance_with_synthetic", 10.0].n) == (2, 3)
 
 
 def test_each_person_alone_is_asked_alone(windows: list[RoomWindow]) -> None:

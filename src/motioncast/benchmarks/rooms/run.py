@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
 
-from motioncast.benchmarks.result import Result, commit
-from motioncast.benchmarks.rooms.scoring import HIPS, figures_of, over_standing_still
+from motioncast.benchmarks.result import Result, Row, commit
+from motioncast.benchmarks.rooms.scoring import HIPS, Samples, figures_of, over_standing_still
 from motioncast.benchmarks.rooms.tally import rows
 from motioncast.benchmarks.rooms.windows import PROTOCOL, RoomWindow, checksum, protocol_hash, windows_of_room
 from motioncast.core.card import ModelCard
@@ -25,6 +25,9 @@ ROOMS = 40
 
 SEED = 2026
 """Of the first room of each split."""
+
+MADE = "_with_synthetic"
+"""After the name of a figure in which people count whom inverse kinematics moves."""
 
 WORDS = 50_000
 """Words of training rooms that a forecast is compared with."""
@@ -89,7 +92,7 @@ def evaluate_rooms(
 ) -> Result:
     """Measure a model by the rooms benchmark; arguments as of :func:`motioncast.benchmarks.run.evaluate`."""
     windows = room_windows(data, split)
-    real = real_words(room_windows(data, "train"))
+    real = real_words([window.recorded() for window in room_windows(data, "train")])
     samples = forecast_rooms(model, windows, alone, progress)
     return result_of(model.card, windows, samples, real, split, alone)
 
@@ -97,14 +100,12 @@ def evaluate_rooms(
 def result_of(
     card: ModelCard,
     windows: Sequence[RoomWindow],
-    samples: Sequence[np.ndarray],
+    samples: Samples,
     real: Dictionary | None,
     split: str = "test",
     alone: bool = False,
 ) -> Result:
     """The result of a model whose futures are known: every figure, and last the ratio to standing still."""
-    names = [window.room for window in windows]
-    measured = [*figures_of(windows, samples, real), over_standing_still(windows, samples)]
     told = f"{' --alone' * alone}{'' if split == 'test' else f' --split {split}'}"
     return Result(
         model=f"{card.name} (others hidden)" if alone else card.name,
@@ -113,13 +114,30 @@ def result_of(
         data=checksum(windows),
         setting={**asdict(PROTOCOL), "moments_ms": PROTOCOL.moments_ms, "split": split},
         windows=len(windows),
-        takes=len(set(names)),
-        independent=f"{len(set(names))} rooms",
+        takes=len({take for window in windows for take in window.takes}),
+        independent=f"{len({window.room for window in windows})} rooms",
         weights=card.checksum,
         parameters=card.parameters,
         training=card.training,
         command=f"motioncast evaluate {card.name} {PROTOCOL.name} --data DIR{told}",
         commit=commit(),
         seed=PROTOCOL.seed,
-        rows=tuple(rows(measured, names, PROTOCOL.fps)),
+        rows=tuple(score(windows, samples, real)),
     )
+
+
+def score(windows: Sequence[RoomWindow], samples: Samples, real: Dictionary | None = None) -> list[Row]:
+    """Every figure of those who were recorded throughout; with those whom inverse kinematics moves, marked; the ratio.
+
+    Args:
+        windows: What happened.
+        samples: What was forecast.
+        real: Words of real motion. Default: NDMS and UMWR are left out.
+    """
+    rooms, recorded = [window.room for window in windows], [window.recorded() for window in windows]
+    all_people = rows(figures_of(windows, samples), rooms, PROTOCOL.fps)
+    return [
+        *rows(figures_of(recorded, samples, real), rooms, PROTOCOL.fps),
+        *(replace(row, metric=f"{row.metric}{MADE}") for row in all_people),
+        *rows([over_standing_still(recorded, samples)], rooms, PROTOCOL.fps),
+    ]

@@ -104,7 +104,8 @@ def errors(tally: Tally, number: int, window: RoomWindow, futures: np.ndarray) -
         found = metric(futures[None], window.future[None], seen)[0]
         tally.add(number, f"{name}_k1", found[0], "m")
         tally.add(number, f"{name}_best_of_{PROTOCOL.samples}_per_person", found.min(0), "m")
-    tally.add(number, f"apd_of_{PROTOCOL.samples}", apd(futures[None])[0], "m")
+    apart = np.where(window.seen.any(0), apd(futures[None])[0], np.nan)
+    tally.add(number, f"apd_of_{PROTOCOL.samples}", apart, "m")
 
 
 def ways(tally: Tally, number: int, window: RoomWindow, body: np.ndarray) -> np.ndarray:

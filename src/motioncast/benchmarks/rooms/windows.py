@@ -54,19 +54,29 @@ class RoomWindow:
             without a hint which of them will be used.
         future: What they did then, ``(time, people, joints, 3)`` metres.
         seen: Whether they were still (or again) there, ``(time, people)``.
+        synthetic: Who is moved by inverse kinematics anywhere in the window, ``(people,)``.
         room: Name of the room: rooms are independent of one another, windows of a room are not.
         start: First frame of the history in the room.
         goals: What they went to.
         pairs: Numbers of people who were recorded together.
+        takes: The takes that they are made of.
     """
 
     scene: Scene
     future: np.ndarray
     seen: np.ndarray
+    synthetic: np.ndarray
     room: str
     start: int
     goals: tuple[Goal, ...] = ()
     pairs: frozenset[frozenset[int]] = frozenset()
+    takes: frozenset[str] = frozenset()
+
+    def recorded(self) -> RoomWindow:
+        """The same window; only who was recorded throughout counts."""
+        kept = {person for person, made in enumerate(self.synthetic.tolist()) if not made}
+        goals = tuple(goal for goal in self.goals if goal.person in kept)
+        return replace(self, seen=self.seen & ~self.synthetic, goals=goals)
 
 
 def windows_of_room(room: Room) -> list[RoomWindow]:
@@ -105,10 +115,12 @@ def window_at(room: Room, scene: Scene, start: int) -> RoomWindow:
         replace(known[start : now + 1], objects=things),
         known.positions[now + 1 : end],
         np.all(known.observed[now + 1 : end], -1),
+        np.any(room.synthetic[start:end, rows], 0),
         scene.source,
         start,
         tuple(goals),
         frozenset(map(frozenset, pairs)),
+        frozenset(take for row in rows for take in room.takes[row]),
     )
 
 
@@ -126,7 +138,8 @@ def as_found(objects: Sequence[SceneObject], now: int) -> tuple[list[str], tuple
 
 def digest(window: RoomWindow) -> str:
     """SHA-256 of a window: positions and objects at 0.1 mm, and who was there."""
-    found = hashlib.sha256(tenths_mm(window.scene.positions) + tenths_mm(window.future) + window.seen.tobytes())
+    found = hashlib.sha256(tenths_mm(window.scene.positions) + tenths_mm(window.future))
+    found.update(window.seen.tobytes() + window.synthetic.tobytes())
     for thing in window.scene.objects:
         found.update(thing.category.encode() + thing.shape.encode())
         found.update(tenths_mm(np.concatenate([thing.size, thing.position, thing.rotation])))

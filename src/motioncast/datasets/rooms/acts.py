@@ -192,10 +192,10 @@ def yaw(item: SceneObject) -> float:
 
 def _stand(puppet: Puppet, _: Actor, __: Ground, random: np.random.Generator) -> Act:
     begin = puppet.time
-    grammar.stand(puppet, random.uniform(1, 5))
+    grammar.stand(puppet, random.uniform(1, 6))
     if random.random() < 0.6:
         grammar.turn(puppet, random.uniform(-1, 1) * 2.2)
-    grammar.stand(puppet, random.uniform(1, 4))
+    grammar.stand(puppet, random.uniform(1, 5))
     return Act(puppet, (("stand", begin, puppet.time, "", puppet.pelvis.last, float(puppet.look.last)),))
 
 
@@ -210,7 +210,7 @@ def _sit(puppet: Puppet, _: Actor, ground: Ground, random: np.random.Generator) 
     middle = place - (size[0] / 2 - 0.25 if kind.shape == "box" else -0.02) * grammar.forwards(look)
     name = ground.name(kind_name)
     seat = thing(kind, name, size, float(middle[0]), float(middle[1]), 0.0, look + np.pi, "caused")
-    rest, leave = grammar.sit(puppet, float(size[2]), random.uniform(3, 14), random)
+    rest, leave = grammar.sit(puppet, float(size[2]), random.uniform(4, 18), random)
     return Act(puppet, (("sit", rest, leave, name, np.array([*place, size[2]]), look),), (seat,))
 
 
@@ -273,7 +273,7 @@ def _write(puppet: Puppet, _: Actor, ground: Ground, random: np.random.Generator
     board = thing(KINDS["whiteboard"], name, size, float(middle[0]), float(middle[1]), HUNG_M, look, "caused")
     side = int(random.random() < 0.8)
     touch = np.array([*(front - 0.06 * ahead), random.uniform(1.25, 1.5)])
-    begin, end = grammar.write(puppet, touch, side, random.uniform(3, 8), random)
+    begin, end = grammar.write(puppet, touch, side, random.uniform(4, 12), random)
     grammar.turn(puppet, random.choice([-1, 1]) * random.uniform(1.7, np.pi))
     return Act(puppet, (("write", begin, end, name, touch, look + np.pi),), (board,))
 

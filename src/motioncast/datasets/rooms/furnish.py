@@ -64,40 +64,52 @@ def decoys(
         ground: The room.
         random: Source of places and sizes.
     """
-    wanted = [kind for kind in used for _ in range(DECOYS)]
-    usual = list(USUAL)
-    while len(wanted) < count:
-        wanted.append(usual[len(wanted) % len(usual)])
-    # large things first, and what stands on others last
-    wanted.sort(key=lambda name: (KINDS[name].place == "top", -KINDS[name].least[0] * KINDS[name].least[1]))
+    needed = [kind for kind in used for _ in range(DECOYS)]
+    usual = [USUAL[number % len(USUAL)] for number in range(max(count - len(needed), 0))]
     found: list[SceneObject] = []
-    for name in wanted:
-        placed = _placed(name, ground.name(name), found, taken, ground.half, random)
-        if placed is not None:
-            found.append(placed)
+    for names in (needed, usual):
+        # large things first, and what stands on others last
+        for name in sorted(names, key=_order):
+            placed = _placed(name, ground, found, taken, random)
+            if placed is None and names is needed:
+                placed = _placed(name, ground, found, taken, random, smallest=True)
+            if placed is not None:
+                found.append(placed)
     # what found no place is made up for by small things
     for name in (*FILLERS,) * count:
         if len(found) >= count:
             break
-        placed = _placed(name, ground.name(name), found, taken, ground.half, random)
+        placed = _placed(name, ground, found, taken, random)
         if placed is not None:
             found.append(placed)
     return found
 
 
+def _order(name: str) -> tuple[bool, float]:
+    kind = KINDS[name]
+    return kind.place == "top", -kind.least[0] * kind.least[1]
+
+
 def _placed(
-    kind_name: str, name: str, found: list[SceneObject], taken: Footprint, half: np.ndarray, random: np.random.Generator
+    name: str,
+    ground: Ground,
+    found: list[SceneObject],
+    taken: Footprint,
+    random: np.random.Generator,
+    smallest: bool = False,
 ) -> SceneObject | None:
-    kind = KINDS[kind_name]
-    size = kind.size(random)
+    """A thing of a kind where there is space for it, or None."""
+    kind = KINDS[name]
+    size = np.array(kind.least) if smallest else kind.size(random)
     if kind.place == "top":
-        return _on_top(kind, name, size, found, random)
+        return _on_top(kind, ground.name(name), size, found, random)
+    draw = _at_wall if kind.place in ("wall", "hung") else _anywhere
     for _ in range(TRIES):
-        x, y, angle = _at_wall(size, half, random) if kind.place in ("wall", "hung") else _anywhere(size, half, random)
+        x, y, angle = draw(size, ground.half, random)
         if taken.free(x, y, angle, size[0], size[1]):
             taken.take(x, y, angle, size[0], size[1])
             height = HUNG_M if kind.place == "hung" else 0.0
-            return thing(kind, name, size, x, y, height, angle, "decoy")
+            return thing(kind, ground.name(name), size, x, y, height, angle, "decoy")
     return None
 
 

@@ -5,11 +5,11 @@ same person's walk: a sentence is ``stop turn? (stand | back sit | reach | write
 from a stated range:
 
 - turn: steps of at most 75 degrees, 0.36 s a footfall,
-- sit: 0.18 to 0.25 m back, down in 1.2 to 1.6 s with the trunk bent 30 to 40 degrees, 3 to 14 s on the seat with
+- sit: 0.18 to 0.25 m back, down in 1.2 to 1.6 s with the trunk bent 30 to 40 degrees, 4 to 18 s on the seat with
   another posture every 2 to 6 s, up again in 1.1 to 1.5 s,
 - reach: 0.7 to 1.0 s there, 0.6 to 3 s with the wrist at the target, one to three targets, 0.7 s back,
-- write: 3 to 8 s along a line on a vertical plane, strokes of 2 to 4 cm, 1 to 1.6 a second,
-- stand: 2 to 9 s.
+- write: 4 to 12 s along a line on a vertical plane, strokes of 2 to 4 cm, 1 to 1.6 a second,
+- stand: 2 to 11 s, with a turn between or without.
 """
 
 from __future__ import annotations

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from motioncast.core.scene_object import SceneObject
+
 PERSONAL_SPACE_M = 0.75
 """Pelvises of two strangers never come closer than this."""
 
@@ -31,6 +33,8 @@ class Ground:
         frames: Length of the scene.
         people: Pelvis paths, each ``(frames, 2)``, not a number while somebody is away.
         things: Circles that nobody may walk into, ``(x, y, radius)``.
+        items: The things themselves, of people who already have their ways.
+        bodies: Joints of these people, every third frame, each ``(n, 31, 3)``.
         named: How many things have a name.
     """
 
@@ -39,6 +43,8 @@ class Ground:
     frames: int
     people: list[np.ndarray] = field(default_factory=list)
     things: list[tuple[float, float, float]] = field(default_factory=list)
+    items: list[SceneObject] = field(default_factory=list)
+    bodies: list[np.ndarray] = field(default_factory=list)
     named: int = 0
 
     def name(self, kind: str) -> str:

@@ -6,21 +6,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from motioncast.core.shapes import signed_distance
 from motioncast.core.skeletons import CMU31
-from motioncast.datasets.rooms.acts import LOOK_BACK, Actor, actor_of, around, perform
+from motioncast.datasets.rooms.acts import DEEPEST_M, LOOK_BACK, Actor, actor_of, around, perform
 from motioncast.datasets.rooms.bodies import PELVIS
 from motioncast.datasets.rooms.clips import Clip, Library
 from motioncast.datasets.rooms.contacts import FPS
-from motioncast.datasets.rooms.ground import Ground
+from motioncast.datasets.rooms.ground import LOOKED_AT, Ground
 from motioncast.datasets.rooms.solo import on_the_floor, solo
 from motioncast.datasets.rooms.stitch import placed
 from motioncast.datasets.rooms.tracks import SHORTEST, Track, enter, walk_to, whole_take
 
-WISHES = {"walk": 0.2, "stand": 0.08, "sit": 0.36, "reach": 0.16, "write": 0.08, "play": 0.12}
+WISHES = {"walk": 0.08, "stand": 0.1, "sit": 0.4, "reach": 0.18, "write": 0.08, "play": 0.16}
 """What a walker wants to do next, and how often."""
 
 LONGEST_S = 60
 TRIES = 12
+ATTEMPTS = 3
+"""An act is drawn anew so often where its thing would stand in the way."""
+
 FROM_WALL_M = 1.3
 """Goals of a walk lie this far from walls; a wall that one works at is a little nearer."""
 
@@ -48,6 +52,16 @@ def enrol(track: Track, ground: Ground) -> None:
     path[track.start : track.start + len(positions)] = positions[:, PELVIS, :2]
     ground.people.append(path)
     ground.things += [circle for item in track.things for circle in around(item)]
+    ground.items += track.things
+    ground.bodies.append(positions[::LOOKED_AT])
+
+
+def clean(track: Track, ground: Ground) -> bool:
+    """Whether nobody of those before is in a new thing, and the new body in none of theirs."""
+    body = track.positions[: ground.frames - track.start : LOOKED_AT]
+    pairs = [(item, body) for item in ground.items]
+    pairs += [(item, other) for item in track.things for other in ground.bodies]
+    return all((signed_distance(item, joints) > -DEEPEST_M).all() for item, joints in pairs)
 
 
 def on_clock(track: Track, frames: int) -> np.ndarray:
@@ -89,7 +103,7 @@ def somebody(players: Cast, solos: float, ground: Ground, random: np.random.Gene
             track = solo(players.solos[int(random.integers(len(players.solos)))], start, ground, random)
         else:
             track = walker(players.actors[subjects[int(random.integers(len(subjects)))]], start, ground, random)
-        if track is not None:
+        if track is not None and clean(track, ground):
             return track
     return None
 
@@ -107,9 +121,7 @@ def walker(actor: Actor, start: int, ground: Ground, random: np.random.Generator
             misses += 1
             continue
         track = onward
-        acted = None
-        if kind != "walk" and track.frames > LOOK_BACK:
-            acted = perform(track, actor, kind, ground, random)
+        acted = _acted(track, actor, kind, ground, random)
         if acted is not None:
             ground.things += [circle for item in acted.things[len(track.things) :] for circle in around(item)]
             track = acted
@@ -119,6 +131,17 @@ def walker(actor: Actor, start: int, ground: Ground, random: np.random.Generator
         track = walk_to(track, actor.gait, outside, ground, random, 0.5) or track
     ground.things = known  # they count from the moment on that the track is enrolled
     return track if track.frames >= SHORTEST else None
+
+
+def _acted(track: Track, actor: Actor, kind: str, ground: Ground, random: np.random.Generator) -> Track | None:
+    """The track with what was wished for, or else with something that needs no thing, or None."""
+    if kind == "walk" or track.frames <= LOOK_BACK:
+        return None
+    for act in (*(kind,) * ATTEMPTS, "play", "stand"):
+        acted = perform(track, actor, act, ground, random)
+        if acted is not None:
+            return acted
+    return None
 
 
 def _goal(kind: str, ground: Ground, random: np.random.Generator) -> np.ndarray:

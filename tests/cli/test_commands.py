@@ -78,6 +78,15 @@ def test_time(command) -> None:
     assert [line.split()[0] for line in done.out.splitlines()[1:7]] == ["1", "2", "3", "4", "8", "16"]
 
 
+def test_time_of_a_whole_forecast_in_a_room(command) -> None:
+    asked = "time sast --paper-size --people 1 --objects 3 --steps 1 --rounds 1 --json".split()
+    answer = command(*asked).answer("time")
+    assert (answer["people"], answer["objects"]) == (1, 3)
+    refused = command("time", "somoformer", "--paper-size")
+    assert refused.status == 2
+    assert "there is: sast" in refused.err
+
+
 def test_quartiles_are_of_the_calls(monkeypatch: pytest.MonkeyPatch) -> None:
     ticks = iter([0.0, 0.001, 10.0, 10.002, 20.0, 20.003])
     monkeypatch.setattr("motioncast.cli.time.perf_counter", lambda: next(ticks))

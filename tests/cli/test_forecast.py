@@ -56,6 +56,13 @@ def test_what_the_user_should_know_is_said_on_stderr(walk: Path, command) -> Non
     assert len(done.answer("forecast")["samples"]) == 1
 
 
+def test_only_models_that_denoise_take_steps(walk: Path, command) -> None:
+    for option, value in (("--steps", "10"), ("--sampler", "ddim")):
+        done = command("forecast", walk, "--model", "somoformer-fast", option, value)
+        assert done.status == 2
+        assert "does not denoise" in done.err
+
+
 @pytest.mark.parametrize("at", ["0", "2.5", "-1"])
 def test_a_moment_outside_the_motion(at: str, walk: Path, command) -> None:
     done = command("forecast", walk, "--at", at)

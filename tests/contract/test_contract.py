@@ -12,6 +12,7 @@ from motioncast.core.forecast import Forecast
 from motioncast.inference.baselines import SimpleGuess
 from motioncast.inference.registry import list_models, load
 from motioncast.inference.session import GraphForecaster
+from motioncast.inference.shipped import ShippedForecaster
 from motioncast.testing import Check, checks, walkers
 
 CHECKS = [check for card in list_models() for check in checks(load(card.name))]
@@ -36,6 +37,15 @@ def test_scenes_of_a_batch_do_not_mix(model: GraphForecaster) -> None:
         alone = model.run(history[[index]], observed[[index]])[0]
         seen = observed[index, -1].any(-1)
         np.testing.assert_allclose(alone[:, seen], whole[index][:, seen], atol=card.tolerance_m)
+
+
+TRAINED = [model for card in list_models() if isinstance(model := load(card.name), ShippedForecaster)]
+
+
+@pytest.mark.parametrize("model", TRAINED, ids=lambda model: model.card.name)
+def test_one_thread_and_two_give_the_same_future(model: ShippedForecaster) -> None:
+    one, two = (model.with_threads(threads).forecast(walkers(frames=60, fps=30), horizon_s=1.0) for threads in (1, 2))
+    np.testing.assert_allclose(one.samples, two.samples, rtol=0, atol=1e-5)
 
 
 CARD = replace(SimpleGuess("zero-velocity").card, name="drifting")

@@ -10,8 +10,10 @@ import numpy as np
 from motioncast.cli import say
 from motioncast.cli.comparing import error_curves, error_table, summary
 from motioncast.cli.reading import AS_THE_FILE_SAYS, Reading, frames_needed, moment, read_scene, seconds_of
+from motioncast.cli.sampling import AS_THE_CARD_SAYS, Sampling, load_sampling
 from motioncast.cli.writing import check_suffix, name_of, open_page, page_beside, spare_inputs, write_forecast
 from motioncast.core.forecast import Forecast
+from motioncast.core.forecaster import Forecaster
 from motioncast.core.scene import Scene
 from motioncast.errors import InputError, SceneError
 
@@ -23,6 +25,7 @@ def forecast(
     at: float | None = None,
     samples: int = 1,
     seed: int = 0,
+    sampling: Sampling = AS_THE_CARD_SAYS,
     out: Path | None = None,
     view: bool = False,
     json: bool = False,
@@ -40,6 +43,7 @@ def forecast(
         at: Forecast from this second of the motion and compare with what follows. Default: from its end.
         samples: Number of different futures, for models that have several.
         seed: Seed of the samples.
+        sampling: How a model that denoises draws its futures.
         out: File to write; its suffix tells the format: npz, html, bvh, glb, csv, trc.
         view: Write the interactive page, NAME.forecast.html, and open it in the browser.
         json: Print the forecast as one JSON object.
@@ -52,7 +56,7 @@ def forecast(
     scene = read_scene(scenes, reading)
     now = scene.frames if at is None else moment(scene, at)
     truth = scene[now:] if now < scene.frames else None
-    answer = _answer(scene, now, model, seconds, samples, seed)
+    answer = _answer(scene, now, load_sampling(model, sampling), seconds, samples, seed)
     say.note(answer.warnings)
 
     usual = Path(f"{name_of(scenes, at)}.forecast.npz")
@@ -72,12 +76,9 @@ def forecast(
         open_page(page)
 
 
-def _answer(scene: Scene, now: int, model: str, seconds: float | None, samples: int, seed: int) -> Forecast:
+def _answer(scene: Scene, now: int, forecaster: Forecaster, seconds: float | None, samples: int, seed: int) -> Forecast:
     """The forecast from frame ``now`` on; its warnings name the people who are left out."""
-    from motioncast.inference.registry import load
-
-    forecaster = load(model)
-    needed = frames_needed(forecaster.card, scene.fps)
+    model, needed = forecaster.card.name, frames_needed(forecaster.card, scene.fps)
     try:
         with say.progress(f"{model} looks ahead") as progress:
             answer = forecaster.forecast(scene[:now], horizon_s=seconds, samples=samples, seed=seed, progress=progress)

@@ -8,18 +8,25 @@ from time import perf_counter
 
 import numpy as np
 
+from motioncast.cli.sampling import AS_THE_CARD_SAYS, Sampling, load_sampling
 from motioncast.cli.say import emit, table
 from motioncast.core.forecaster import Forecaster
 from motioncast.core.scene import Scene
+from motioncast.core.scene_object import SceneObject
 from motioncast.core.skeletons import MRT15, SKELETONS
 
 PEOPLE = (1, 2, 3, 4, 8, 16)
 DEFAULT_PEOPLE = 3
 
+PASSES, FORECASTS = 100, 5
+"""Rounds by default: of single passes, and of whole forecasts by a model that denoises."""
+
+TABLE_M = np.array([1.2, 0.8, 0.7])
+
 
 @dataclass(frozen=True)
 class Timing:
-    """Quartiles of the time of one pass."""
+    """Quartiles of the time of one round."""
 
     people: int
     q1_ms: float
@@ -32,21 +39,35 @@ def time(
     /,
     *,
     people: int | None = None,
+    objects: int = 0,
+    seconds: float | None = None,
+    paper_size: bool = False,
+    sampling: Sampling = AS_THE_CARD_SAYS,
     threads: int = 1,
-    rounds: int = 100,
+    rounds: int | None = None,
     json: bool = False,
 ) -> None:
-    """Measure one pass of a model's graph, or of a simple guess, on this machine.
+    """Measure one pass of a model's graph, or a whole forecast, on this machine.
+
+    A whole forecast is measured of models that denoise, of simple guesses, and of all with --seconds.
 
     Args:
         model: Name of a model, or an ONNX file.
         people: Number of people. Default: several, to show the growth; 3 with --json.
+        objects: Number of objects around them.
+        seconds: Length of the forecast. Default: the model's horizon.
+        paper_size: Measure the model at the size of its paper, with made-up weights.
+        sampling: How a model that denoises draws its futures.
         threads: Threads of ONNX Runtime.
-        rounds: Passes that are measured, after a tenth as many to warm up.
+        rounds: Rounds that are measured, after a tenth as many to warm up. Default: 100; 5 of models that denoise.
         json: Print one JSON object.
     """
+    from motioncast.inference.registry import at_paper_size
+
+    forecaster = load_sampling(at_paper_size(model) if paper_size else model, sampling)
+    rounds = rounds or (FORECASTS if forecaster.card.diffusion else PASSES)
     counts = (people,) if people else (DEFAULT_PEOPLE,) if json else PEOPLE
-    timings = [measure(one_pass(model, count, threads), count, rounds) for count in counts]
+    timings = [measure(one_round(forecaster, count, objects, seconds, threads), count, rounds) for count in counts]
     if json:
         (timing,) = timings
         emit(
@@ -57,7 +78,7 @@ def time(
                 "q3_ms": timing.q3_ms,
                 "threads": threads,
                 "people": timing.people,
-                "objects": 0,
+                "objects": objects,
                 "peak_memory_mb": peak_memory_mb(),
             }
         )
@@ -67,25 +88,29 @@ def time(
     ]
     table(("people", "median ms", "1st quartile", "3rd quartile"), rows)
     memory = peak_memory_mb()
-    print(f"\n{model}, {threads} thread(s), {rounds} passes each" + (f"; at most {memory:.0f} MB" if memory else ""))
+    print(f"\n{model}, {threads} thread(s), {rounds} rounds each" + (f"; at most {memory:.0f} MB" if memory else ""))
 
 
-def one_pass(model: str, people: int, threads: int) -> Callable[[], object]:
-    """What is measured: the graph alone where there is one, else the whole answer."""
-    from motioncast.inference.registry import load
+def one_round(
+    forecaster: Forecaster, people: int, objects: int, seconds: float | None, threads: int
+) -> Callable[[], object]:
+    """What is measured: the graph alone where one pass of it is the answer, else the whole forecast."""
     from motioncast.inference.session import GraphForecaster
+    from motioncast.inference.shipped import ShippedForecaster
 
-    forecaster: Forecaster = load(model)
-    card = forecaster.card
+    if isinstance(forecaster, ShippedForecaster):
+        forecaster = forecaster.with_threads(threads)
+    card, random = forecaster.card, np.random.default_rng(0)
     skeleton = SKELETONS.get(card.skeleton, MRT15)
     shape = (card.history, people, len(skeleton), 3)
-    positions = np.random.default_rng(0).normal(0, 0.5, shape).astype(np.float32)
-    if isinstance(forecaster, GraphForecaster):
-        graph = forecaster.with_threads(threads)
-        history, observed = positions[None], np.ones((1, *shape[:-1]), bool)
+    positions = random.normal(0, 0.5, shape).astype(np.float32)
+    if isinstance(forecaster, GraphForecaster) and seconds is None:
+        graph, history, observed = forecaster, positions[None], np.ones((1, *shape[:-1]), bool)
         return lambda: graph.run(history, observed)
-    scene = Scene(positions, skeleton, card.fps)
-    return lambda: forecaster.forecast(scene)
+    places = np.append(random.uniform(-4, 4, (objects, 2)), np.full((objects, 1), 0.35), 1)
+    tables = [SceneObject(f"table {number}", "table", "box", TABLE_M, place) for number, place in enumerate(places)]
+    scene = Scene(positions, skeleton, card.fps, objects=tuple(tables))
+    return lambda: forecaster.forecast(scene, horizon_s=seconds)
 
 
 def measure(run: Callable[[], object], people: int, rounds: int) -> Timing:

@@ -50,6 +50,20 @@ def load(name: str | Path) -> LiveForecaster:
     raise ModelNotFound(f'there is no model "{name}"; {advice} (motioncast models lists all)')
 
 
+def at_paper_size(name: str) -> Path:
+    """The graph of a model at the size of its paper, whose weights are made up: for timing.
+
+    Raises:
+        ModelNotFound: If there is none.
+    """
+    folder = _package() / "paper-size"
+    path = folder / f"{name}.onnx"
+    if not path.is_file():
+        known = ", ".join(sorted(card.stem for card in folder.glob("*.json")))
+        raise ModelNotFound(f'there is no "{name}" at paper size; there is: {known}')
+    return path
+
+
 def list_models() -> list[ModelCard]:
     """The cards of all models that :func:`load` finds by name, the default first."""
     cards = [_card(path) for _, path in _shipped()]
@@ -71,11 +85,15 @@ def home() -> Path:
 
 def _shipped() -> Iterator[tuple[str, Path]]:
     """Name and weights of each model in the package and in the user's folder."""
-    package = Path(str(resources.files("motioncast"))) / "weights"
-    for folder in (package, home()):
+    for folder in (_package(), home()):
         if folder.is_dir():
             graphs = sorted(folder.glob("*.onnx"))
             yield from ((path.stem, path) for path in graphs if not path.name.endswith(".scene.onnx"))
+
+
+def _package() -> Path:
+    """The folder of shipped weights."""
+    return Path(str(resources.files("motioncast"))) / "weights"
 
 
 def _card(weights: Path) -> ModelCard:

@@ -79,8 +79,8 @@ def test_time(command) -> None:
 
 
 def test_time_of_a_whole_forecast_in_a_room(command) -> None:
-    asked = "time sast --paper-size --people 1 --objects 3 --steps 1 --rounds 1 --json".split()
-    answer = command(*asked).answer("time")
+    room = ("--people", "1", "--objects", "3")
+    answer = command("time", "sast", "--paper-size", *room, "--steps", "1", "--rounds", "1", "--json").answer("time")
     assert (answer["people"], answer["objects"]) == (1, 3)
     refused = command("time", "somoformer", "--paper-size")
     assert refused.status == 2

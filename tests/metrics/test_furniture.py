@@ -102,6 +102,8 @@ def test_who_stands_by_a_wall_or_walks_along_it_does_not_cross_it() -> None:
     assert not crosses([wall], np.array([[1.4, 0.0], [1.4, 0.0], [1.4, 1.0]])).any()
     assert crosses([wall], np.array([[1.4, 0.0], [1.4, 3.0], [1.6, 3.0], [1.6, 0.0]])).sum() == 0  # around its end
     assert crosses([wall], np.array([[1.5, 0.0], [1.5, 0.0]])).all()  # within it
+    step = replace(wall, size=np.array([0.1, 4.0, 0.2]))
+    assert not crosses([step], np.array([[1.4, 0.0], [1.6, 0.0]])).any()
 
 
 def test_a_person_who_sits_on_a_seat_sits_in_the_air_or_stands() -> None:

@@ -27,6 +27,9 @@ SEAT_M = 0.20
 ANKLE_M = 0.16
 """A foot stands on what is at most this far below its ankle: about 9 cm, and a raised heel."""
 
+WALL_M = 1.0
+"""What is lower is a step or a ledge, and can be crossed."""
+
 SUNK_M = 0.03
 """Joints this far below a top still count as above it: cushions give way."""
 
@@ -170,7 +173,7 @@ def crosses(things: Sequence[SceneObject], path: np.ndarray) -> np.ndarray:
     A step is the straight line between two frames, so that nobody slips through a thin wall between them.
 
     Args:
-        things: The objects; boxes of the category ``occluder`` are walls, whatever their height.
+        things: The objects; boxes of the category ``occluder`` that are at least a metre high are walls.
         path: ``(..., time, 2)`` metres (:func:`motioncast.metrics.paths.root_path`).
 
     Example:
@@ -181,7 +184,7 @@ def crosses(things: Sequence[SceneObject], path: np.ndarray) -> np.ndarray:
     path = np.asarray(path, np.float64)
     hit = np.zeros((*path.shape[:-2], path.shape[-2] - 1), bool)
     for thing in things:
-        if thing.category != "occluder" or thing.shape != "box":
+        if thing.category != "occluder" or thing.shape != "box" or thing.size[2] < WALL_M:
             continue
         level = np.concatenate([path, np.full((*path.shape[:-1], 1), thing.position[2])], -1)
         place, half = thing.inward(level)[..., :2], thing.size[:2] / 2

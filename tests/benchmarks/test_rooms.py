@@ -165,6 +165,7 @@ def test_naive_twin_of_the_intervals() -> None:
     pooled = Pooled("largest", 250, "m", [np.array(some) for some in values[:2]] * 2, lambda items: items.max())
     found = rows([error, Ratio("ratio", error, one), Mean("mean", [error, one]), pooled], names, fps=25)
     assert [row.value for row in found] == pytest.approx([22 / 6, 22 / 6, (22 / 6 + 1) / 2, 4.0])
+    assert rows([Pooled("nothing", 250, "m", [np.zeros(0)] * 4, np.mean)], names, fps=25) == []
     assert found[0].n == 3
     assert found[0].horizon_s == 10.0
     # all draws of three rooms, each by its probability, are near what a thousand draws give

@@ -167,7 +167,7 @@ def rows(figures: Sequence[Measured], rooms: Sequence[str], fps: float, seed: in
     """Figures with 95 % intervals over rooms, which are drawn anew 1,000 times.
 
     Args:
-        figures: The figures.
+        figures: The figures; those that no window holds are left out.
         rooms: The room of each window.
         fps: Frames a second.
         seed: Seed of the draws.
@@ -177,6 +177,8 @@ def rows(figures: Sequence[Measured], rooms: Sequence[str], fps: float, seed: in
     weights = np.concatenate([np.ones((1, len(rooms))), drawn])
     found = []
     for figure in figures:
+        if not figure.counts.any():
+            continue
         with np.errstate(invalid="ignore", divide="ignore"):  # a draw may hold no window in which it is measured
             values = figure.mean(weights)
         low, high = np.nanpercentile(values[1:], (2.5, 97.5)).tolist()

@@ -36,7 +36,9 @@ def source(library: Library, players: Cast) -> None:
     print(f"  real takes: {minutes:.1f} minutes, {walks / total:.0%} walking forwards on the floor, ", end="")
     print(f"{stands / total:.0%} with a pelvis at rest, {sits / FPS:.0f} s sitting")
     walk = np.mean([sliding(actor.gait.positions[:, FEET]) for actor in players.actors.values()])
-    print(f"  walkers {len(players.actors)}, whole takes {len(players.solos)}, couples {len(players.couples)}, ", end="")
+    print(
+        f"  walkers {len(players.actors)}, whole takes {len(players.solos)}, couples {len(players.couples)}, ", end=""
+    )
     print(f"sliding of their walks {100 * walk:.1f} cm/s")
 
 
@@ -69,9 +71,16 @@ def report(data: Path, split: str, count: int, seed: int) -> None:
         for one in made
         if "recorded" not in one.pairs.values()
     ]
-    print(f"  people deeper than 2 cm in one another (composed rooms) {np.mean([share for share, _ in clear]):.3%}; ", end="")
+    print(
+        f"  people deeper than 2 cm in one another (composed rooms) {np.mean([share for share, _ in clear]):.3%}; ",
+        end="",
+    )
     print(f"nearest strangers {min(one.nearest_m for one in checks):.2f} m")
-    print(f"  seats: {len(seats)} sittings, error p95 {100 * np.percentile(seats, 95):.1f} cm" if len(seats) else "  no seats")
+    print(
+        f"  seats: {len(seats)} sittings, error p95 {100 * np.percentile(seats, 95):.1f} cm"
+        if len(seats)
+        else "  no seats"
+    )
     for name in ("real", "synthetic"):
         print(f"  sliding of {name} frames {100 * np.nanmean([one.sliding_m_s[name] for one in checks]):.1f} cm/s")
     print(f"  free floor {np.mean([one.free for one in checks]):.0%}; ", end="")

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from motioncast.core.shapes import signed_distance
-from motioncast.datasets.rooms.acts import TOUCHING, yaw
 from motioncast.datasets.rooms.bodies import PELVIS
 from motioncast.datasets.rooms.compose import Room
 from motioncast.datasets.rooms.contacts import FEET, FPS, runs, sliding
 from motioncast.datasets.rooms.events import PELVIS_ABOVE_SEAT_M
+from motioncast.datasets.rooms.fitting import TOUCHING, yaw
 from motioncast.datasets.rooms.footprint import footprint
 from motioncast.datasets.rooms.furnish import DECOYS
 
@@ -144,6 +144,3 @@ def _time_share(room: Room) -> dict[str, float]:
     }
     shares = {name: float(mask.sum() / max(here.sum(), 1)) for name, mask in masks.items()}
     return {**shares, "other": 1 - sum(shares.values())}
-
-
-

@@ -74,15 +74,15 @@ def load(data: str | Path, split: str) -> Library:
 
 def clips_of(scene: Scene) -> list[Clip]:
     """The stretches of a scene in which everybody is seen throughout."""
-    order = [scene.skeleton.index(name) for name in CMU31.names]  # Acclaim files list the same joints in their own order
+    order = [
+        scene.skeleton.index(name) for name in CMU31.names
+    ]  # Acclaim files list the same joints in their own order
     positions, observed = scene.positions[:, :, order], scene.observed[:, :, order]
     scene = resample(Scene(positions, CMU31, scene.fps, observed, scene.people), FPS)
-    seen = scene.observed.all((1, 2))
+    seen = np.all(scene.observed, (1, 2))
     if not seen.any():
         return []
     floors = [floor_height(scene.positions[seen, person]) for person in range(len(scene.people))]
     positions = scene.positions.copy()
     positions[..., 2] -= np.array(floors, np.float32)[None, :, None]
-    return [
-        Clip(scene.people[0], positions[first:end]) for first, end in runs(seen) if end - first >= SHORTEST
-    ]
+    return [Clip(scene.people[0], positions[first:end]) for first, end in runs(seen) if end - first >= SHORTEST]

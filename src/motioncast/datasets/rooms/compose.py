@@ -12,10 +12,10 @@ import numpy as np
 from motioncast.core.scene import Scene
 from motioncast.core.scene_object import SceneObject
 from motioncast.core.skeletons import CMU31
-from motioncast.datasets.rooms.acts import yaw
 from motioncast.datasets.rooms.clips import load
 from motioncast.datasets.rooms.contacts import FPS
 from motioncast.datasets.rooms.events import Event
+from motioncast.datasets.rooms.fitting import yaw
 from motioncast.datasets.rooms.footprint import footprint
 from motioncast.datasets.rooms.furnish import decoys, walls
 from motioncast.datasets.rooms.ground import Ground
@@ -75,7 +75,7 @@ class Room:
     @property
     def here(self) -> np.ndarray:
         """Who is there when, ``(time, people)`` bool."""
-        return self.scene.observed.all(-1)
+        return np.all(self.scene.observed, -1)
 
 
 def rooms(data: str | Path, split: str, count: int, seed: int) -> Iterator[Room]:
@@ -122,7 +122,7 @@ def room(players: Cast, split: str, seed: int) -> Room:
     events, synthetic = _events(stay, len(positions)), _synthetic(stay, here.shape)
     used = _roles([item for track in tracks for item in track.things], events)
     objects = _furnished(positions[here].reshape(-1, 3), used, recipe, ground, random)
-    pairs = {pair: "composed" for pair in combinations(range(len(stay)), 2)}
+    pairs = dict.fromkeys(combinations(range(len(stay)), 2), "composed")
     if recorded and seen[:2].all():
         pairs[0, 1] = "recorded"
     observed = np.repeat(here[..., None], len(CMU31), -1)

@@ -16,7 +16,7 @@ HEIGHT_M, SPEED_M_S, LEAST = 0.05, 0.3, 4
 
 
 def speed(points: np.ndarray) -> np.ndarray:
-    """Speed of points ``(..., time, points, 3)`` or ``(..., time, points, 2)``, ``(..., time, points)`` metres a second."""
+    """Speed of points ``(..., time, points, 2 or 3)``, ``(..., time, points)`` metres a second."""
     return np.linalg.norm(np.gradient(points, axis=-3), axis=-1) * FPS
 
 
@@ -48,7 +48,7 @@ def foot_contact(positions: np.ndarray, floor_m: float = 0.0) -> np.ndarray:
     """
     feet = positions[:, FEET]
     low, slow = feet[..., 2] - floor_m < HEIGHT_M, speed(feet) < SPEED_M_S
-    standing = low.reshape(-1, 2, 2).any(-1) & slow.reshape(-1, 2, 2).any(-1)
+    standing = np.any(low.reshape(-1, 2, 2), -1) & np.any(slow.reshape(-1, 2, 2), -1)
     return np.stack([lasting(side, LEAST) for side in standing.T], -1)
 
 
@@ -86,7 +86,7 @@ def lasting(mask: np.ndarray, least: int) -> np.ndarray:
 
 
 def pivot(positions: np.ndarray) -> np.ndarray:
-    """The point on the floor that a person ``(time, 31, 3)`` stands on: between the feet, by their rest, ``(time, 2)``."""
+    """Where a person ``(time, 31, 3)`` stands, ``(time, 2)``: between the feet, nearer to the one at rest."""
     points = positions[:, FEET].reshape(len(positions), 2, 2, 3).mean(2)
     rest = np.exp(-((speed(points) / 0.4) ** 2) - (points[..., 2] / 0.06) ** 2) + 1e-3
     weight = smoothed(rest / rest.sum(-1, keepdims=True), 2)

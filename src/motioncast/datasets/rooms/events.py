@@ -33,7 +33,8 @@ class Event:
     """One thing that one person does.
 
     Attributes:
-        kind: ``sit``, ``reach``, ``write``, ``step``, ``hold`` or ``stand``.
+        kind: ``sit``, ``reach``, ``fetch`` (from one reach to the next), ``write``, ``stand``, ``play`` (a real stretch
+            on the spot), ``step`` or ``hold``.
         person: Index of the person.
         start: First frame.
         end: End, exclusive.

@@ -41,7 +41,7 @@ class Footprint:
     def _cells(self, x: float, y: float, angle: float, length: float, width: float) -> tuple[np.ndarray, np.ndarray]:
         sides = [np.linspace(-side / 2, side / 2, int(side / CELL_M * 2) + 2) for side in (length, width)]
         points = np.stack([side.ravel() for side in np.meshgrid(*sides)], -1)
-        points = turned(points, angle) + [x, y]
+        points = turned(points, angle) + np.array([x, y])
         return tuple(np.clip((points - self.corner) // CELL_M, 0, np.array(self.taken.shape) - 1).astype(int).T)
 
 

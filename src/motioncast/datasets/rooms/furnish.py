@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from motioncast.core.scene_object import SceneObject
-from motioncast.datasets.rooms.acts import yaw
+from motioncast.datasets.rooms.fitting import yaw
 from motioncast.datasets.rooms.footprint import Footprint
 from motioncast.datasets.rooms.ground import DOOR_M, Ground
 from motioncast.datasets.rooms.kinds import HUNG_M, KINDS, WALL_HEIGHT_M, Kind, thing
@@ -48,7 +48,7 @@ def walls(half: np.ndarray, doors: np.ndarray) -> list[SceneObject]:
             size = np.array([last - first, WALL_M, WALL_HEIGHT_M])
             angle = 0.0 if along == 0 else np.pi / 2
             name = f"wall {len(found) + 1}"
-            found.append(thing(KINDS["wall"], name, size, *middle, 0.0, angle, "decoy"))
+            found.append(thing(KINDS["wall"], name, size, float(middle[0]), float(middle[1]), 0.0, angle, "decoy"))
     return found
 
 

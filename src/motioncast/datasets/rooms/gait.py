@@ -90,9 +90,7 @@ def walking(positions: np.ndarray) -> np.ndarray:
 
 def gait_of(clips: Sequence[Clip]) -> Gait | None:
     """The walking of one subject, or None where there is too little for a round of steps."""
-    found = [
-        (clip, first, end) for clip in clips for first, end in runs(walking(clip.positions[:, 0]))
-    ]
+    found = [(clip, first, end) for clip in clips for first, end in runs(walking(clip.positions[:, 0]))]
     lengths = [end - first for _, first, end in found]
     if sum(lengths) < LEAST_S * FPS:
         return None

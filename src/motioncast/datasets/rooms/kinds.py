@@ -19,7 +19,8 @@ class Kind:
         shape: ``box`` or ``cylinder``.
         least: Smallest depth, width and height, metres; depth points away from who uses it.
         most: Largest.
-        place: ``floor``, ``wall`` (its back to a wall), ``hung`` (on a wall, above the floor) or ``top`` (on a counter).
+        place: ``floor``, ``wall`` (its back to a wall), ``hung`` (on a wall, above the floor) or ``top``
+            (on a counter).
     """
 
     category: str

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from motioncast.core.shapes import signed_distance
 from motioncast.core.skeletons import CMU31
-from motioncast.datasets.rooms.acts import DEEPEST_M, LOOK_BACK, Actor, actor_of, around, perform
+from motioncast.datasets.rooms.actors import Actor, actor_of
+from motioncast.datasets.rooms.acts import LOOK_BACK, perform
 from motioncast.datasets.rooms.bodies import PELVIS
 from motioncast.datasets.rooms.clips import Clip, Library
 from motioncast.datasets.rooms.contacts import FPS
+from motioncast.datasets.rooms.fitting import DEEPEST_M, around
 from motioncast.datasets.rooms.ground import LOOKED_AT, Ground
 from motioncast.datasets.rooms.solo import on_the_floor, solo
 from motioncast.datasets.rooms.stitch import placed
 from motioncast.datasets.rooms.tracks import SHORTEST, Track, enter, walk_to, whole_take
 
-WISHES = {"walk": 0.08, "stand": 0.1, "sit": 0.4, "reach": 0.18, "write": 0.08, "play": 0.16}
-"""What a walker wants to do next, and how often."""
+WISHES = {"walk": 0.08, "stand": 0.1, "sit": 0.4, "reach": 0.08, "fetch": 0.1, "write": 0.08, "play": 0.16}
+"""What a walker wants to do next, and how often; who fetches something reaches here and then there."""
 
 LONGEST_S = 60
 TRIES = 12
@@ -113,18 +115,26 @@ def walker(actor: Actor, start: int, ground: Ground, random: np.random.Generator
     known = list(ground.things)
     track = enter(actor.gait, ground.doors[int(random.integers(len(ground.doors)))], start, random)
     until = min(ground.frames, start + round(random.uniform(SHORTEST / FPS, LONGEST_S) * FPS))
-    misses = 0
+    misses, fetched = 0, -1  # frame in which the hand left what is fetched, or -1
     while track.now < until and misses < 4:
-        kind = str(random.choice(list(WISHES), p=list(WISHES.values())))
+        kind = "reach" if fetched >= 0 else str(random.choice(list(WISHES), p=list(WISHES.values())))
         onward = walk_to(track, actor.gait, _goal(kind, ground, random), ground, random)
         if onward is None:
             misses += 1
             continue
         track = onward
-        acted = _acted(track, actor, kind, ground, random)
-        if acted is not None:
-            ground.things += [circle for item in acted.things[len(track.things) :] for circle in around(item)]
-            track = acted
+        acted = _acted(track, actor, "reach" if kind == "fetch" else kind, ground, random)
+        if acted is None:
+            continue
+        ground.things += [circle for item in acted.things[len(track.things) :] for circle in around(item)]
+        new = acted.events[len(track.events) :]
+        track, fetched, before = acted, -1, fetched
+        if new and new[-1].kind == "reach":
+            if before >= 0:
+                fetch = replace(new[0], kind="fetch", start=before, end=new[0].start)
+                track = replace(track, events=(*track.events, fetch))
+            elif kind == "fetch":
+                fetched = new[-1].end
     if track.now < ground.frames:
         x, y, angle = ground.doors[int(random.integers(len(ground.doors)))]
         outside = np.array([x, y]) - 0.9 * np.array([np.cos(angle), np.sin(angle)])
@@ -147,7 +157,7 @@ def _acted(track: Track, actor: Actor, kind: str, ground: Ground, random: np.ran
 def _goal(kind: str, ground: Ground, random: np.random.Generator) -> np.ndarray:
     """Somewhere in the room; near a wall for what is done there."""
     goal = random.uniform(-1, 1, 2) * (ground.half - FROM_WALL_M)
-    if kind in ("reach", "write"):
+    if kind in ("reach", "fetch", "write"):
         axis = int(random.integers(2))
         goal[axis] = random.choice([-1, 1]) * (ground.half[axis] - FROM_WALL_M + 0.1)
     return goal

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from motioncast.core.scene_object import SceneObject
-from motioncast.datasets.rooms.acts import TOUCHING, fits
 from motioncast.datasets.rooms.bodies import PELVIS, turned
 from motioncast.datasets.rooms.clips import Clip
 from motioncast.datasets.rooms.contacts import FEET, FPS, smoothed
 from motioncast.datasets.rooms.events import Event, events_of
+from motioncast.datasets.rooms.fitting import TOUCHING, fits
 from motioncast.datasets.rooms.ground import Ground
 from motioncast.datasets.rooms.kinds import HUNG_M, KINDS, thing
 from motioncast.datasets.rooms.stitch import placed

@@ -90,7 +90,11 @@ def whole_take(positions: np.ndarray, start: int, name: str) -> Track:
 def enter(gait: Gait, door: np.ndarray, start: int, random: np.random.Generator) -> Track:
     """A track whose first frames come in by a door."""
     index = np.arange(len(gait) - BLEND)
-    fits = (gait.ends[index] - index >= BLEND) & (index - gait.firsts[index] >= BLEND) & (gait.onward[index + MIDDLE, 0] >= 0)
+    fits = (
+        (gait.ends[index] - index >= BLEND)
+        & (index - gait.firsts[index] >= BLEND)
+        & (gait.onward[index + MIDDLE, 0] >= 0)
+    )
     first = int(random.choice(index[fits]))
     tail = gait.positions[first : first + BLEND].astype(np.float64)
     way = tail[-1, PELVIS, :2] - gait.positions[first - BLEND, PELVIS, :2]
@@ -124,9 +128,7 @@ def walk_to(
     return None
 
 
-def walk_on(
-    track: Track, gait: Gait, goal: np.ndarray, ground: Ground, random: np.random.Generator
-) -> Track | None:
+def walk_on(track: Track, gait: Gait, goal: np.ndarray, ground: Ground, random: np.random.Generator) -> Track | None:
     """The track with one more piece of walking towards a goal, or None where there is no free way.
 
     The best of several ways to bend the piece is taken: free of walls, things and people, and nearest to the goal.

@@ -127,11 +127,12 @@ class SASTConfig:
 PRESETS: dict[str, SASTConfig] = {
     "motioncast": SASTConfig(),
     "light": SASTConfig(
-        channels=(64, 128, 192), others_channels=(64, 64, 64), scene_width=128, scene_layers=2, people_layers=2
+        channels=(64, 128, 192), others_channels=(64, 64, 64), scene_width=128, scene_layers=1, people_width=64,
+        people_layers=1, conv_dropout=0.0,
     ),
     "release": SASTConfig(preset="release", skeleton="hik29", horizon=279, conv_dropout=0.2),
     "paper": SASTConfig(preset="paper", skeleton="hik29", horizon=279, conv_dropout=0.2),
-}
+}  # fmt: skip
 """Ours at the paper's size, ours for two CPU cores, and the published networks."""
 
 
@@ -326,7 +327,7 @@ class SAST(nn.Module):
         """What is known of the objects before the first step and for all of them.
 
         Args:
-            codes: Each object as each denoised person sees it, ``(B, Q, G, 2061)``.
+            codes: Each object as each denoised person sees it, ``(B, Q, G, 2061)``; an empty room has one empty slot.
             there: ``(B, G)`` bool.
 
         Returns:

@@ -1,0 +1,72 @@
+"""A denoiser's two graphs answer as it does."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch")
+onnxruntime = pytest.importorskip("onnxruntime")
+
+from motioncast.core.card import ModelCard  # noqa: E402
+from motioncast.models.sast import CODE, SAST, SASTConfig  # noqa: E402
+from motioncast.training.export_diffusion import export_diffusion  # noqa: E402
+
+pytestmark = pytest.mark.torch
+
+CONFIG = SASTConfig(
+    history=9, horizon=18, channels=(32, 32, 64), others_channels=(32, 32, 32), scene_width=32, scene_layers=1,
+    people_width=32, people_layers=2,
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def model() -> SAST:
+    torch.manual_seed(0)
+    model = SAST(CONFIG).eval()
+    for parameter in model.decoder.blocks[-1].parameters():
+        torch.nn.init.normal_(parameter, std=0.03)
+    return model.half().float()  # what ships is rounded
+
+
+@pytest.fixture(scope="module")
+def folder(model: SAST, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("graphs")
+    card = ModelCard("toy", "SAST", "forecast", "mrt15", CONFIG.history, CONFIG.horizon, CONFIG.fps, stochastic=True)
+    done = export_diffusion(model, card, folder)
+    assert done.parameters == sum(parameter.numel() for parameter in model.parameters())
+    assert ModelCard.from_json((folder / "toy.json").read_text()) == done
+    return folder
+
+
+@pytest.mark.parametrize(("people", "objects"), [(1, 1), (2, 3), (5, 6)])
+def test_graphs_and_torch_agree(model: SAST, folder: Path, people: int, objects: int) -> None:
+    random = np.random.default_rng(people)
+
+    def normal(*size: int) -> np.ndarray:
+        return random.normal(size=size).astype(np.float32)
+
+    codes, there = np.abs(normal(people, objects, CODE)) * 3, np.arange(objects) > 0
+    given = {
+        "history": normal(CONFIG.history, people, 15, 3),
+        "observed": random.random((CONFIG.history, people)) < 0.9,
+        "noisy": normal(people, CONFIG.horizon, 15, 3),
+        "estimate": normal(CONFIG.horizon, people, 15, 3),
+        "level": np.array(-1.5, np.float32),
+    }
+    scene, step = (onnxruntime.InferenceSession(folder / f"toy{part}.onnx") for part in (".scene", ""))
+    (memory,) = scene.run(None, {"codes": codes, "objects": there})
+    clean, future = step.run(None, given | {"memory": memory, "objects": there})
+    assert clean.shape == given["noisy"].shape
+    assert future.shape == given["estimate"].shape
+    with torch.no_grad():
+        tensors = {name: torch.from_numpy(value)[None] for name, value in given.items()}
+        tensors["level"] = tensors["level"][0]
+        tensors["there"] = torch.from_numpy(there)[None]
+        tensors["memory"] = model.encode_objects(torch.from_numpy(codes)[None], tensors["there"])
+        expected = model(**tensors)
+    np.testing.assert_allclose(memory, tensors["memory"][0], atol=1e-4)
+    np.testing.assert_allclose(clean, expected[0][0], atol=1e-4)
+    np.testing.assert_allclose(future, expected[1][0], atol=1e-4)

@@ -12,6 +12,7 @@ import argparse
 import hashlib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -36,55 +37,60 @@ FEWEST = 20
 Table = dict[str, dict[tuple[str, float], Row]]
 """Model -> metric and moment -> figure."""
 
-Columns = Sequence[tuple[str, str, float, int]]
-"""Head, metric, moment in seconds, digits."""
 
-REALISM: Columns = [
-    *((f"realism × 100 until {s} s", "realism_until", s, 1) for s in (2, 4, 6, 8, 10)),
-    *((f"by judges who never saw it, {s} s", "realism_unseen_until", s, 1) for s in (2, 6, 10)),
+class Column(NamedTuple):
+    """A column of a table."""
+
+    head: str
+    metric: str
+    moment_s: float = 10.0
+    digits: int = 2
+    scale: float = 1.0
+
+
+REALISM = [
+    *(Column(f"realism × 100 until {s} s", "realism_until", s, 1, 100) for s in (2, 4, 6, 8, 10)),
+    *(Column(f"by judges who never saw it, {s} s", "realism_unseen_until", s, 1, 100) for s in (2, 6, 10)),
 ]
-LOCAL: Columns = [
-    ("NDMS", "ndms", 10, 3),
-    *((f"UMWR {s} s", "umwr_of_second", s, 2) for s in (2, 4, 6, 8, 10)),
-    ("UMWR, whole", "umwr", 10, 2),
-    ("jump at the seam over real", "seam_over_real", 10, 2),
-    ("foot skating, m/s", "foot_skating", 10, 3),
+LOCAL = [
+    Column("NDMS", "ndms", digits=3),
+    *(Column(f"UMWR {s} s", "umwr_of_second", s) for s in (2, 4, 6, 8, 10)),
+    Column("UMWR, whole", "umwr"),
+    Column("jump at the seam over real", "seam_over_real"),
+    Column("foot skating, m/s", "foot_skating", digits=3),
 ]
-WAYS: Columns = [
-    ("path, m", "path_length", 10, 2),
-    ("its deviation", "path_length_std", 10, 2),
-    ("W1 to true paths", "path_length_w1", 10, 2),
-    ("ADE, m", "ade_k1", 10, 2),
-    (f"ADE, best of {PROTOCOL.samples}", f"ade_best_of_{PROTOCOL.samples}_per_person", 10, 2),
-    ("FDE, m", "fde_k1", 10, 2),
-    (f"FDE, best of {PROTOCOL.samples}", f"fde_best_of_{PROTOCOL.samples}_per_person", 10, 2),
-    (f"APD of {PROTOCOL.samples}, m", f"apd_of_{PROTOCOL.samples}", 10, 2),
-    ("error over standing still", "ratio_to_zero_velocity", 10, 3),
+WAYS = [
+    Column("path, m", "path_length"),
+    Column("its deviation", "path_length_std"),
+    Column("W1 to true paths", "path_length_w1"),
+    Column("ADE, m", "ade_k1"),
+    Column(f"ADE, best of {PROTOCOL.samples}", f"ade_best_of_{PROTOCOL.samples}_per_person"),
+    Column("FDE, m", "fde_k1"),
+    Column(f"FDE, best of {PROTOCOL.samples}", f"fde_best_of_{PROTOCOL.samples}_per_person"),
+    Column(f"APD of {PROTOCOL.samples}, m", f"apd_of_{PROTOCOL.samples}"),
+    Column("error over standing still", "ratio_to_zero_velocity", digits=3),
 ]
-PLACES: Columns = [
-    ("depth in things, mm", "depth_in_things", 10, 1),
-    ("95th percentile", "depth_in_things_p95", 10, 1),
-    ("deeper than 2 cm, %", "frames_deeper_than_2_cm", 10, 1),
-    ("than 5 cm, %", "frames_deeper_than_5_cm", 10, 1),
-    ("sitting, %", "sitting_frames", 10, 1),
-    ("on a seat, % of it", "seat_under_sitting", 10, 1),
-    ("feet on the floor, %", "floor_under_standing", 10, 1),
-    ("through walls, % of people", "people_through_walls", 10, 1),
-    ("at the right thing, %", "goal_accuracy", 10, 1),
-    ("by chance, %", "goal_chance", 10, 1),
+PLACES = [
+    Column("depth in things, mm", "depth_in_things", 10, 1, 1000),
+    Column("95th percentile, mm", "depth_in_things_p95", 10, 1, 1000),
+    Column("deeper than 2 cm, %", "frames_deeper_than_2_cm", 10, 1, 100),
+    Column("than 5 cm, %", "frames_deeper_than_5_cm", 10, 1, 100),
+    Column("sitting, %", "sitting_frames", 10, 1, 100),
+    Column("on a seat, % of it", "seat_under_sitting", 10, 1, 100),
+    Column("feet on the floor, %", "floor_under_standing", 10, 1, 100),
+    Column("through walls, % of people", "people_through_walls", 10, 1, 100),
+    Column("at the right thing, %", "goal_accuracy", 10, 1, 100),
+    Column("by chance, %", "goal_chance", 10, 1, 100),
+    Column("on the right seat, %", "goal_sit_accuracy", 10, 1, 100),
+    Column("by chance, %", "goal_sit_chance", 10, 1, 100),
 ]
-COMPANY: Columns = [
-    ("pairs in one another, %", "pairs_overlapping", 10, 2),
-    ("how deep, mm", "overlap_of_pairs", 10, 2),
-    ("couples in time", "synchrony_recorded", 10, 2),
-    ("more than with strangers", "synchrony_recorded_over_strangers", 10, 2),
-    ("composed neighbours, more than with strangers", "synchrony_composed_over_strangers", 10, 2),
+COMPANY = [
+    Column("pairs in one another, %", "pairs_overlapping", 10, 2, 100),
+    Column("how deep, mm", "overlap_of_pairs", 10, 2, 1000),
+    Column("couples in time", "synchrony_recorded"),
+    Column("more than with strangers", "synchrony_recorded_over_strangers"),
+    Column("composed neighbours, more than with strangers", "synchrony_composed_over_strangers"),
 ]
-SCALE = {"realism_until": 100, "realism_unseen_until": 100, "depth_in_things": 1000, "depth_in_things_p95": 1000,
-         "frames_deeper_than_2_cm": 100, "frames_deeper_than_5_cm": 100, "sitting_frames": 100,
-         "seat_under_sitting": 100, "floor_under_standing": 100, "people_through_walls": 100, "goal_accuracy": 100,
-         "goal_chance": 100, "pairs_overlapping": 100, "overlap_of_pairs": 1000}  # fmt: skip
-"""By what figures are multiplied for the page."""
 
 
 def main() -> None:
@@ -200,19 +206,20 @@ def judged(
             table[name] |= {("realism_unseen_until", moment): row for (_, moment), row in found.items()}
 
 
-def cell(row: Row | None, digits: int) -> str:
+def cell(row: Row | None, column: Column) -> str:
     """A figure and half of its interval."""
     if row is None:
         return "-"
-    scale = SCALE.get(row.metric.removesuffix(MADE), 1)
-    text = f"{scale * row.value:.{digits}f}"
-    return text if row.low is None or row.high is None else f"{text} ±{scale * (row.high - row.low) / 2:.{digits}f}"
+    text = f"{column.scale * row.value:.{column.digits}f}"
+    if row.low is None or row.high is None:
+        return text
+    return f"{text} ±{column.scale * (row.high - row.low) / 2:.{column.digits}f}"
 
 
-def markdown(table: Table, columns: Columns, mark: str = "") -> str:
-    lines = [f"| model | {' | '.join(head for head, *_ in columns)} |", "|---|" + "---:|" * len(columns)]
+def markdown(table: Table, columns: Sequence[Column], mark: str = "") -> str:
+    lines = [f"| model | {' | '.join(column.head for column in columns)} |", "|---|" + "---:|" * len(columns)]
     for name, figures in table.items():
-        cells = (cell(figures.get((metric + mark, float(moment))), digits) for _, metric, moment, digits in columns)
+        cells = (cell(figures.get((column.metric + mark, column.moment_s)), column) for column in columns)
         lines.append(f"| `{name}` | {' | '.join(cells)} |")
     return "\n".join([*lines, ""])
 
@@ -237,8 +244,12 @@ def pictures(table: Table) -> None:
 
 
 def too_few(windows: Sequence[RoomWindow]) -> str:
-    goals = sum(len(window.goals) for window in windows)
-    return f"{goals} such events" + (": too few, not measurable." if goals < FEWEST else ".")
+    kinds = [goal.kind for window in windows for goal in window.goals]
+    told = (
+        f"{count} {what}{' (too few: not measurable)' * (count < FEWEST)}"
+        for what, count in (("such events", len(kinds)), ("of them seats", kinds.count("sit")))
+    )
+    return ", ".join(told) + "."
 
 
 def page(table: Table, windows: Sequence[RoomWindow]) -> str:

@@ -61,7 +61,7 @@ def test_only_who_is_there_at_now_is_handed_over_and_masked_when_gone(windows: l
     assert window.future.shape == (250, 2, 15, 3)
     assert window.seen.sum(0).tolist() == [250, 100]  # frames 25 to 124
     assert window.pairs == {frozenset((0, 1))}
-    assert [(goal.person, goal.frame) for goal in window.goals] == [(0, 100 - 24)]
+    assert [(goal.person, goal.frame, goal.kind) for goal in window.goals] == [(0, 100 - 24, "sit")]
 
 
 def test_nothing_tells_a_model_what_will_be_used(windows: list[RoomWindow]) -> None:
@@ -96,7 +96,7 @@ def test_the_truth_is_what_it_is_measured_against(windows: list[RoomWindow]) -> 
     assert 0.7 < value["seam_over_real", 250] < 1.5
     assert value["sitting_frames", 250] == 0
     assert ("seat_under_sitting", 250) not in value  # nobody sits: not measurable
-    assert value["goal_chance", 250] == 0.5
+    assert value["goal_chance", 250] == value["goal_sit_chance", 250] == 0.5
 
 
 def test_who_has_left_counts_no_more(windows: list[RoomWindow]) -> None:

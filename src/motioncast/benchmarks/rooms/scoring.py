@@ -163,8 +163,9 @@ def goals(tally: Tally, number: int, window: RoomWindow, body: np.ndarray) -> No
         used = window.scene.objects[goal.thing]
         kind = sum(thing.category == used.category for thing in window.scene.objects)
         place = body[goal.frame - 1, goal.person, list(HIPS)].mean(0)
-        tally.add(number, "goal_accuracy", nearest_of_kind(window.scene.objects, used, place), "1")
-        tally.add(number, "goal_chance", np.array(1 / kind), "1")
+        for what in ("goal", f"goal_{goal.kind}"):
+            tally.add(number, f"{what}_accuracy", nearest_of_kind(window.scene.objects, used, place), "1")
+            tally.add(number, f"{what}_chance", np.array(1 / kind), "1")
 
 
 def feet(tally: Tally, number: int, window: RoomWindow, body: np.ndarray) -> None:

@@ -27,6 +27,9 @@ PROTOCOL = Protocol(
     f"at most {PER_ROOM} windows of each furnished test room, every 6 s", stride=150, samples=4,
 )  # fmt: skip
 
+USES = ("sit", "reach", "write")
+"""Events that are goals: who begins one has come to a thing."""
+
 COLUMNS = ("window", "room", "first_frame", "last_frame", "fps", "people", "objects", "goals", "sha256")
 
 
@@ -38,11 +41,13 @@ class Goal:
         person: Number of the person.
         thing: Number of the object.
         frame: Forecast frame, from 1, in which the person is at it.
+        kind: What it is used for, such as ``sit``.
     """
 
     person: int
     thing: int
     frame: int
+    kind: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -102,9 +107,9 @@ def window_at(room: Room, scene: Scene, start: int) -> RoomWindow:
     known = scene.select([scene.people[row] for row in rows])
     names, things = as_found(scene.objects, now)
     goals = [
-        Goal(rows.index(event.person), names.index(event.thing), event.start - now)
+        Goal(rows.index(event.person), names.index(event.thing), event.start - now, event.kind)
         for event in room.events
-        if event.thing and event.person in rows and now < event.start < end
+        if event.kind in USES and event.thing and event.person in rows and now < event.start < end
     ]
     pairs = [
         (rows.index(one), rows.index(other))

@@ -19,8 +19,12 @@ SAYS = {
     "02_continue_an_animation": "salsa_continued.glb",
     "03_compare_with_simple_guesses": "root-velocity-damped",
     "04_bring_your_own_model": "all checks hold",
+    "05_forecast_in_a_room": "stool: sittable at",
 }
-LEAVES = {"00_forecast_a_file": {"forecast.npz", "forecast.html"}}
+LEAVES = {
+    "00_forecast_a_file": {"forecast.npz", "forecast.html"},
+    "05_forecast_in_a_room": {"kitchen.json", "room.html"},
+}
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)

@@ -9,7 +9,7 @@ import numpy as np
 
 from motioncast.cli import say
 from motioncast.cli.comparing import error_curves, error_table, summary
-from motioncast.cli.reading import AS_THE_FILE_SAYS, Reading, frames_needed, moment, read_scene, seconds_of
+from motioncast.cli.reading import AS_THE_FILE_SAYS, Reading, frames_needed, moment, put_into, read_scene, seconds_of
 from motioncast.cli.sampling import AS_THE_CARD_SAYS, Sampling, load_sampling
 from motioncast.cli.writing import check_suffix, name_of, open_page, page_beside, spare_inputs, write_forecast
 from motioncast.core.forecast import Forecast
@@ -23,6 +23,7 @@ def forecast(
     model: str = "somoformer-fast",
     seconds: float | None = None,
     at: float | None = None,
+    room: Path | None = None,
     samples: int = 1,
     seed: int = 0,
     sampling: Sampling = AS_THE_CARD_SAYS,
@@ -41,6 +42,7 @@ def forecast(
         model: Name of a model (motioncast models), or an ONNX file.
         seconds: Length of the forecast. Default: the model's horizon.
         at: Forecast from this second of the motion and compare with what follows. Default: from its end.
+        room: Furniture around the people: a JSON file written by hand, or a GLB whose nodes are named.
         samples: Number of different futures, for models that have several.
         seed: Seed of the samples.
         sampling: How a model that denoises draws its futures.
@@ -55,6 +57,8 @@ def forecast(
         check_suffix(out)
     scene = read_scene(scenes, reading)
     now = scene.frames if at is None else moment(scene, at)
+    if room is not None:
+        scene = put_into(scene, room, now)
     truth = scene[now:] if now < scene.frames else None
     answer = _answer(scene, now, load_sampling(model, sampling), seconds, samples, seed)
     say.note(answer.warnings)
@@ -64,7 +68,7 @@ def forecast(
     page = out if out is not None and out.suffix.lower() == ".html" else page_beside(out or usual)
     if view and page not in targets:
         targets.append(page)
-    spare_inputs([*scenes, reading.map], targets, answer.people)
+    spare_inputs([*scenes, reading.map, room], targets, answer.people)
     files = [file for target in targets for file in write_forecast(answer, target, truth)]
     if json:
         from motioncast.formats.answers import forecast_answer

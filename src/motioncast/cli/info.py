@@ -6,25 +6,29 @@ from pathlib import Path
 
 import numpy as np
 
-from motioncast.cli.reading import AS_THE_FILE_SAYS, Reading, frames_needed, holds_forecast, read_scene
+from motioncast.cli.reading import AS_THE_FILE_SAYS, Reading, frames_needed, holds_forecast, put_into, read_scene
 from motioncast.cli.say import table
 from motioncast.core.card import ModelCard
 from motioncast.core.scene import Scene
+from motioncast.core.scene_object import SceneObject
 from motioncast.core.skeleton import Skeleton
 from motioncast.errors import SkeletonError
 
 
-def info(*files: Path, reading: Reading = AS_THE_FILE_SAYS) -> None:
+def info(*files: Path, room: Path | None = None, reading: Reading = AS_THE_FILE_SAYS) -> None:
     """Say what motion files hold: people, rate, what each joint was recognised as, and whether it can be forecast.
 
     Args:
         files: One scene file, or one motion file a person.
+        room: Furniture around the people: a JSON file written by hand, or a GLB whose nodes are named.
         reading: How to read files whose header lies.
     """
     from motioncast.formats.units import stature
     from motioncast.inference.registry import list_models
 
     scene = read_scene(files, reading)
+    if room is not None:
+        scene = put_into(scene, room)
     print(f"{scene.source}")
     print(f"{scene.frames} frames at {scene.fps:g} a second, {scene.duration_s:.2f} s")
     print(f"skeleton {scene.skeleton.label}, {len(scene.skeleton)} joints")
@@ -40,6 +44,9 @@ def info(*files: Path, reading: Reading = AS_THE_FILE_SAYS) -> None:
         rows.append((person, when, f"{scene.observed[:, row].mean():.0%}", f"{height:.2f} m"))
     table(("person", "there", "joints seen", "stature about"), rows)
     print()
+    if scene.objects:
+        table(("object", "category", "shape", "size", "where"), [thing_row(thing) for thing in scene.objects])
+        print(f"floor at {scene.floor_m:.2f} m\n" if scene.floor_m is not None else "")
     lengths = bone_lengths(scene)
     names = scene.skeleton.names
     table(
@@ -57,6 +64,14 @@ def info(*files: Path, reading: Reading = AS_THE_FILE_SAYS) -> None:
     default = list_models()[0]
     reason = obstacle(scene, default)
     print("\nready to forecast" if reason is None else f"\ncannot be forecast by {default.name}: {reason}")
+
+
+def thing_row(thing: SceneObject) -> tuple[str, ...]:
+    """An object as a line of a table; of one that moves, where it is in the end."""
+    size = " x ".join(f"{length:.2f}" for length in thing.size)
+    x, y, z = thing.at(-1).position
+    where = f"({x:.2f}, {y:.2f}, {z:.2f})" + (", moves" if thing.moves else "")
+    return thing.name, thing.category.replace("_", " "), thing.shape, f"{size} m", where
 
 
 def forecast_line(file: Path) -> str:

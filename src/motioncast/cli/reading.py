@@ -43,6 +43,22 @@ def read_scene(paths: Sequence[Path], reading: Reading = AS_THE_FILE_SAYS) -> Sc
     return scene
 
 
+def put_into(scene: Scene, file: Path, history: int | None = None) -> Scene:
+    """A scene with the furniture of a room file; says on stderr what was inferred and who stands inside a thing.
+
+    Args:
+        scene: The people.
+        file: The room.
+        history: Frames of the scene that may be looked at. Default: all.
+    """
+    from motioncast.core.room import furnish
+    from motioncast.formats.room import read_room
+
+    furnished = furnish(scene, read_room(file), history)
+    note(furnished.remarks[len(scene.remarks) :])
+    return furnished
+
+
 def moment(scene: Scene, seconds: float) -> int:
     """Number of frames that are history when the scene is asked about after that many seconds.
 

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
-from motioncast.cli.reading import holds_forecast
+from motioncast.cli.reading import holds_forecast, put_into
 from motioncast.cli.writing import check_suffix, open_page, page_beside, write_forecast
 from motioncast.errors import InputError
 
 
-def view(*files: Path, out: Path | None = None, closed: bool = False) -> None:
+def view(*files: Path, room: Path | None = None, out: Path | None = None, closed: bool = False) -> None:
     """Show a forecast as an interactive page.
 
     Motion without a forecast has no page: motioncast forecast FILE --view makes both.
 
     Args:
         files: A forecast (npz), one.
+        room: Furniture to show around the people: a JSON file written by hand, or a GLB whose nodes are named.
         out: Page to write. Default: NAME.forecast.html beside the forecast.
         closed: Write the page and do not open it.
     """
@@ -36,7 +38,10 @@ def view(*files: Path, out: Path | None = None, closed: bool = False) -> None:
         )
     page = out or page_beside(file)
     check_suffix(page, (".html",))
-    write_forecast(load_forecast(file), page, load_truth(file))
+    answer = load_forecast(file)
+    if room is not None:
+        answer = replace(answer, history=put_into(answer.history, room))
+    write_forecast(answer, page, load_truth(file))
     print(f"written: {page}")
     if not closed:
         open_page(page)

@@ -105,9 +105,20 @@ class Forecast:
         return self.samples[int(np.argmax(self.weights))]
 
     def scene(self, sample: int | None = None) -> Scene:
-        """One sample (default: the most probable) as a scene of its own, without the history."""
+        """One sample (default: the most probable) as a scene of its own, without the history.
+
+        Things stand where they were last seen.
+        """
         positions = self.best if sample is None else self.samples[sample]
-        return Scene(positions, self.skeleton, self.fps, people=self.people, source=f"forecast by {self.card.name}")
+        return Scene(
+            positions,
+            self.skeleton,
+            self.fps,
+            people=self.people,
+            source=f"forecast by {self.card.name}",
+            objects=tuple(thing.at(-1) for thing in self.history.objects),
+            floor_m=self.history.floor_m,
+        )
 
     def continued(self, sample: int | None = None) -> Scene:
         """History and one sample (default: the most probable) as one scene that goes on without a step.
@@ -115,6 +126,7 @@ class Forecast:
         It holds the people who are forecast. Where the history has rotations the forecast gets them too.
         """
         past, future = self.history.select(self.people), self.scene(sample)
+        frames = past.frames + future.frames
         rotations = None
         if past.rotations is not None:
             future = kinematics.fit_rotations(future, past)
@@ -126,4 +138,5 @@ class Forecast:
             observed=np.concatenate([past.observed, future.observed]),
             rotations=rotations,
             source=f"{past.source}, continued by {self.card.name}",
+            objects=tuple(thing[np.minimum(np.arange(frames), past.frames - 1)] for thing in past.objects),
         )

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from motioncast.core.forecast import Forecast
+from motioncast.core.scene_object import SceneObject
 
 
 def forecast_answer(forecast: Forecast, files: Sequence[Path] = ()) -> dict[str, Any]:
@@ -16,6 +17,7 @@ def forecast_answer(forecast: Forecast, files: Sequence[Path] = ()) -> dict[str,
         forecast: The forecast.
         files: Files that were written from it.
     """
+    things = [_thing(thing.at(-1)) for thing in forecast.history.objects]
     return {
         "schema": "motioncast.forecast/1",
         "model": forecast.card.name,
@@ -24,6 +26,7 @@ def forecast_answer(forecast: Forecast, files: Sequence[Path] = ()) -> dict[str,
         "seed": forecast.seed,
         "skeleton": list(forecast.skeleton.names),
         "people": list(forecast.people),
+        **({"objects": things} if things else {}),
         "times_s": forecast.times_s,
         "samples": [
             {"weight": float(weight), "positions": positions}
@@ -32,4 +35,16 @@ def forecast_answer(forecast: Forecast, files: Sequence[Path] = ()) -> dict[str,
         "radius_m": dict(forecast.radius_m),
         "files": [str(file) for file in files],
         "warnings": list(forecast.warnings),
+    }
+
+
+def _thing(thing: SceneObject) -> dict[str, Any]:
+    """An object that stands; of points and meshes, how large they are."""
+    return {
+        "name": thing.name,
+        "category": thing.category,
+        "shape": thing.shape,
+        "size": thing.size,
+        "position": thing.position,
+        "rotation": thing.rotation,
     }

@@ -11,10 +11,12 @@ from pathlib import Path
 from typing import Protocol, cast
 
 from motioncast.core.forecast import Forecast
+from motioncast.core.room import furnish
 from motioncast.core.scene import Scene, join
 from motioncast.errors import FormatError, InputError, OutputError
 from motioncast.formats import asf_amc, bvh, c3d, csv, npz, trc, units
 from motioncast.formats.files import read_bytes, read_text
+from motioncast.formats.room import read_room
 
 HEAD_BYTES = 4096
 
@@ -47,6 +49,7 @@ def load_scene(
     unit: str | None = None,
     fps: float | None = None,
     named: Mapping[str, str] | None = None,
+    room: str | Path | None = None,
 ) -> Scene:
     """The people of one world and one clock, from one scene file or several motion files.
 
@@ -57,6 +60,7 @@ def load_scene(
         unit: Unit of length of the files (m, cm, mm, inch, cmu); else stated by them or inferred.
         fps: Frame rate to believe instead of the files'.
         named: Landmarks by joint name, over the recognised ones (``read_map``).
+        room: JSON or GLB file of the furniture around them (``formats.room``), in their world.
 
     Raises:
         InputError: If a file is missing, comes twice, or its format is unknown.
@@ -85,7 +89,8 @@ def load_scene(
         else:
             scene = format_of(file).read(file, up=up, unit=unit, fps=fps, named=named)
         scenes.append(units.check_size(scene))
-    return scenes[0] if len(scenes) == 1 else join(scenes)
+    scene = scenes[0] if len(scenes) == 1 else join(scenes)
+    return scene if room is None else furnish(scene, read_room(room))
 
 
 FOR_BLENDER = (".fbx", ".dae", ".blend", ".usd", ".usda", ".usdc", ".usdz", ".abc")

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from motioncast.benchmarks.result import load_result, save_result
+from motioncast.benchmarks.rooms import run
 from motioncast.benchmarks.rooms.run import forecast_rooms, real_words, result_of, score
 from motioncast.benchmarks.rooms.scoring import figures_of
 from motioncast.benchmarks.rooms.tally import Mean, Pooled, Ratio, Tally, rows
@@ -148,6 +149,15 @@ def test_the_manifest_lists_every_window(windows: list[RoomWindow]) -> None:
     lines = manifest(windows).splitlines()
     assert len(lines) == 1 + len(windows)
     assert lines[1].startswith("0,room 0,0,274,25,2,3,1,")
+
+
+def test_evaluated_by_name(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(run, "rooms", lambda data, split, count, seed: map(made_up_room, range(2)))
+    result = evaluate("replay", "rooms", tmp_path)
+    assert (result.model, result.benchmark, result.windows) == ("replay", "rooms", 2)
+    assert {row.metric for row in result.rows} >= {"ndms", "path_length_w1", "seam_over_real", "goal_accuracy"}
+    with pytest.raises(InputError, match="skeleton"):
+        evaluate("somoformer-somof", "rooms", tmp_path)
 
 
 def test_rooms_are_not_shared_among_processes() -> None:

@@ -15,6 +15,7 @@ from motioncast.benchmarks.rooms.run import evaluate_rooms
 from motioncast.benchmarks.rooms.windows import PROTOCOL as ROOMS
 from motioncast.benchmarks.scoring import independent, score
 from motioncast.benchmarks.spread import Spread, serially
+from motioncast.core.card import ModelCard
 from motioncast.core.forecaster import Forecaster
 from motioncast.core.scene import Scene
 from motioncast.core.skeletons import SKELETONS
@@ -48,17 +49,14 @@ def evaluate(
         InputError: If the data is missing, or the model is of another skeleton.
     """
     forecaster = load(model) if isinstance(model, str) else model
+    card = forecaster.card
     if benchmark == ROOMS.name:
+        _same_skeleton(card, ROOMS)
         if spread is not serially:
             raise InputError(f"{benchmark} is forecast one room after the other; leave --workers and --ray out")
         return evaluate_rooms(forecaster, Path(data), split, alone, progress)
     protocol, windows = windows_of(benchmark, Path(data), split)
-    card = forecaster.card
-    if card.skeleton not in ("any", protocol.skeleton):
-        raise InputError(
-            f'model "{card.name}" has the skeleton {card.skeleton}; {benchmark} is scored on {protocol.skeleton}; '
-            f"choose a model of its setting"
-        )
+    _same_skeleton(card, protocol)
     forecasts = forecast_windows(model, protocol, windows, alone, spread, progress)
     told = f"{' --alone' * alone}{'' if split == 'test' else f' --split {split}'}"
     return Result(
@@ -78,6 +76,14 @@ def evaluate(
         seed=protocol.seed,
         rows=tuple(score(protocol, windows, forecasts)),
     )
+
+
+def _same_skeleton(card: ModelCard, protocol: Protocol) -> None:
+    if card.skeleton not in ("any", protocol.skeleton):
+        raise InputError(
+            f'model "{card.name}" has the skeleton {card.skeleton}; {protocol.name} is scored on {protocol.skeleton}; '
+            f"choose a model of its setting"
+        )
 
 
 def forecast_windows(

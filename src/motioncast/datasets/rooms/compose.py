@@ -18,12 +18,9 @@ from motioncast.datasets.rooms.events import Event
 from motioncast.datasets.rooms.fitting import yaw
 from motioncast.datasets.rooms.footprint import footprint
 from motioncast.datasets.rooms.furnish import decoys, walls
-from motioncast.datasets.rooms.ground import Ground
+from motioncast.datasets.rooms.ground import LEAD, Ground
 from motioncast.datasets.rooms.people import Cast, cast, couple, enrol, on_clock, somebody
 from motioncast.datasets.rooms.tracks import Track
-
-LEAD = round(8 * FPS)
-"""Frames that are made and thrown away, so that a room does not start empty."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,14 +103,7 @@ def room(players: Cast, split: str, seed: int) -> Room:
     recipe, random = RECIPES[split], np.random.default_rng([seed, *split.encode()])
     people = int(random.integers(recipe.people[0], recipe.people[1] + 1))
     frames = LEAD + round(random.uniform(*recipe.seconds) * FPS)
-    ground = _ground(people, frames, random)
-    tracks = couple(players, ground, random) if people > 1 and random.random() < recipe.couple else []
-    recorded = bool(tracks)
-    for track in tracks:
-        enrol(track, ground)
-    while len(tracks) < people and (track := somebody(players, recipe.solo, ground, random)) is not None:
-        enrol(track, ground)
-        tracks.append(track)
+    ground, tracks, recorded = _crowd(players, people, frames, recipe, random)
     positions = np.stack([on_clock(track, frames) for track in tracks], 1)[LEAD:]
     seen = np.isfinite(positions[:, :, 0, 0]).sum(0) >= FPS
     # the couple stays together or goes together
@@ -137,6 +127,23 @@ def room(players: Cast, split: str, seed: int) -> Room:
     )
     takes = tuple(tuple(dict.fromkeys(track.takes)) for track in stay)
     return Room(scene, tuple(events), pairs, synthetic, takes, ground.half, seed, split)
+
+
+def _crowd(
+    players: Cast, people: int, frames: int, recipe: Recipe, random: np.random.Generator
+) -> tuple[Ground, list[Track], bool]:
+    """A room with people in it, fewer where no more find a way, and whether the first two were recorded together."""
+    while True:  # where not even one finds a way, another room is drawn
+        ground = _ground(people, frames, random)
+        tracks = couple(players, ground, random) if people > 1 and random.random() < recipe.couple else []
+        recorded = bool(tracks)
+        for track in tracks:
+            enrol(track, ground)
+        while len(tracks) < people and (track := somebody(players, recipe.solo, ground, random)) is not None:
+            enrol(track, ground)
+            tracks.append(track)
+        if tracks:
+            return ground, tracks, recorded
 
 
 def _ground(people: int, frames: int, random: np.random.Generator) -> Ground:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from motioncast.core.scene_object import SceneObject
+from motioncast.datasets.rooms.contacts import FPS
 
 PERSONAL_SPACE_M = 0.75
 """Pelvises of two strangers never come closer than this."""
@@ -20,6 +21,9 @@ THING_M = 0.35
 DOOR_M = 1.1
 OUTSIDE_M = 1.2
 LOOKED_AT = 3
+
+LEAD = round(8 * FPS)
+"""Frames that are made and thrown away, so that a room does not start empty."""
 """Width of a door, and how far beyond the wall one is still in sight."""
 
 

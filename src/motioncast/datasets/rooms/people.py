@@ -14,13 +14,16 @@ from motioncast.datasets.rooms.bodies import PELVIS
 from motioncast.datasets.rooms.clips import Clip, Library
 from motioncast.datasets.rooms.contacts import FPS
 from motioncast.datasets.rooms.fitting import DEEPEST_M, around
-from motioncast.datasets.rooms.ground import LOOKED_AT, Ground
+from motioncast.datasets.rooms.ground import LEAD, LOOKED_AT, Ground
 from motioncast.datasets.rooms.solo import on_the_floor, solo
 from motioncast.datasets.rooms.stitch import placed
 from motioncast.datasets.rooms.tracks import SHORTEST, Track, enter, walk_to, whole_take
 
 WISHES = {"walk": 0.08, "stand": 0.1, "sit": 0.4, "reach": 0.08, "fetch": 0.1, "write": 0.08, "play": 0.16}
 """What a walker wants to do next, and how often; who fetches something reaches here and then there."""
+
+FROM_THE_OUTSET = 0.5
+"""Share of people who are there when the scene begins; the others come at any time."""
 
 LONGEST_S = 60
 TRIES = 12
@@ -100,7 +103,8 @@ def somebody(players: Cast, solos: float, ground: Ground, random: np.random.Gene
     """
     subjects = list(players.actors)
     for _ in range(TRIES):
-        start = int(random.integers(0, ground.frames - SHORTEST))
+        latest = LEAD if random.random() < FROM_THE_OUTSET else ground.frames - SHORTEST
+        start = int(random.integers(0, latest))
         if players.solos and random.random() < solos:
             track = solo(players.solos[int(random.integers(len(players.solos)))], start, ground, random)
         else:

@@ -21,6 +21,9 @@ from motioncast.datasets.rooms.kinds import HUNG_M, KINDS, thing
 from motioncast.datasets.rooms.puppet import Puppet
 from motioncast.datasets.rooms.stitch import placed
 
+LEAST = round(2 * FPS)
+"""Frames of the shortest real stretch that is played."""
+
 STAND_OFF_M = 0.3
 """From the ankles of somebody who works at a thing to its front."""
 
@@ -134,11 +137,12 @@ def _write(puppet: Puppet, _: Actor, ground: Ground, random: np.random.Generator
 def _play(puppet: Puppet, actor: Actor, _: Ground, random: np.random.Generator) -> Act:
     """A real stretch on the spot between two synthetic ones that lead into it and out of it."""
     name, scene = actor.scenes[int(random.integers(len(actor.scenes)))]
-    length = min(len(scene), int(random.integers(round(3 * FPS), round(14 * FPS))))
-    stands = standing(scene, actor.figure.height)
-    first = int(random.choice(np.flatnonzero(stands[: len(scene) - length + 1])))
-    last = first + length - 1
-    last = int(np.flatnonzero(stands[: last + 1])[-1])
+    rests = np.flatnonzero(standing(scene, actor.figure.height))
+    # a stretch begins and ends standing, seen from its whole take
+    rests = np.union1d(rests, [0, len(scene) - 1])
+    first = int(random.choice(rests[rests < len(scene) - LEAST]))
+    later = rests[rests >= first + LEAST]
+    last = int(later[max(np.searchsorted(later, first + random.uniform(3, 14) * FPS) - 1, 0)])
     frames = scene[first : last + 1].astype(np.float64)
     angle = float(puppet.look.last) - float(facing(frames[0]))
     middle = frames[0, list(ANKLES), :2].mean(0)

@@ -73,6 +73,8 @@ def index(boards: list[Leaderboard]) -> str:
             f"| [{board.benchmark}]({board.benchmark}.md) | {board.setting['windows']} | `{best.model}` | "
             f"{best.value:.3f} | {interval} |"
         )
+    if (FOLDER / "rooms.md").is_file():
+        lines += ["", "[rooms](rooms.md): ten seconds among furniture, written by benchmarks/rooms_table.py."]
     return "\n".join([*lines, ""])
 
 

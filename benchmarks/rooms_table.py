@@ -81,6 +81,8 @@ PLACES = [
     Column("through walls, % of people", "people_through_walls", 10, 1, 100),
     Column("at the right thing, %", "goal_accuracy", 10, 1, 100),
     Column("by chance, %", "goal_chance", 10, 1, 100),
+    Column("if another was nearer, %", "goal_ahead_accuracy", 10, 1, 100),
+    Column("by chance, %", "goal_ahead_chance", 10, 1, 100),
     Column("on the right seat, %", "goal_sit_accuracy", 10, 1, 100),
     Column("by chance, %", "goal_sit_chance", 10, 1, 100),
 ]
@@ -291,7 +293,7 @@ Paths over the ground of those who were there all the time. ADE, FDE and APD are
 ## Does it respect things?
 
 The deepest joint of a body inside a box or a cylinder; seats do not count for who sits. A seat is under who sits where
-its top is at most 20 cm below the middle of the hips, the floor under who stands where the lower ankle is at most 16 cm
+its top is at most 20 cm below the pelvis, the floor under who stands where the lower ankle is at most 16 cm
 above it. The right thing is what a person truly went to, among all of its kind in the room, at the moment of the
 contact: {few_real}
 

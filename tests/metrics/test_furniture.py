@@ -9,6 +9,7 @@ from motioncast.core.rotation import multiply
 from motioncast.core.scene_object import SceneObject
 from motioncast.core.skeletons import MRT15
 from motioncast.metrics.furniture import (
+    Legs,
     above_top,
     crosses,
     grounded,
@@ -20,9 +21,7 @@ from motioncast.metrics.furniture import (
 )
 from motioncast.testing.scenes import standing_pose
 
-HIPS = (MRT15.index("left_hip"), MRT15.index("right_hip"))
-KNEES = (MRT15.index("left_knee"), MRT15.index("right_knee"))
-ANKLES = (MRT15.index("left_ankle"), MRT15.index("right_ankle"))
+LEGS = Legs.of(MRT15)
 
 
 def turned(angle: float) -> np.ndarray:
@@ -44,14 +43,18 @@ def motion() -> np.ndarray:
     return np.random.default_rng(4).uniform((-2, -2, -0.1), (2, 2, 1.2), (3, 8, 5, 3))
 
 
-def sitting_pose(seat_m: float) -> np.ndarray:
-    """Somebody whose hips are over the stool, 10 cm above a seat of that height, ``(15, 3)``."""
-    pose = np.zeros((15, 3))
+def sitting_pose(seat_m: float = 0.45) -> np.ndarray:
+    """Somebody whose pelvis is 10 cm above the stool's place at that height, the hips 6 cm lower, ``(15, 3)``."""
+    pose = np.tile(np.array([-1.0, 0.3, seat_m + 0.1]), (15, 1))
     for side, x in zip((0, 1), (-0.1, 0.1), strict=True):
-        pose[HIPS[side]] = (-1.0 + x, 0.3, seat_m + 0.1)
-        pose[KNEES[side]] = (-1.0 + x, 0.7, seat_m + 0.05)
-        pose[ANKLES[side]] = (-1.0 + x, 0.7, 0.09)
+        pose[LEGS.hips[side]] = (-1.0 + x, 0.3, seat_m + 0.04)
+        pose[LEGS.knees[side]] = (-1.0 + x, 0.7, seat_m + 0.04)
+        pose[LEGS.ankles[side]] = (-1.0 + x, 0.7, 0.09)
     return pose
+
+
+def held(pose: np.ndarray, frames: int = 20) -> np.ndarray:
+    return np.repeat(pose[None], frames, 0)
 
 
 def inside(thing: SceneObject, point: np.ndarray) -> float:
@@ -106,27 +109,63 @@ def test_who_stands_by_a_wall_or_walks_along_it_does_not_cross_it() -> None:
     assert not crosses([step], np.array([[1.4, 0.0], [1.6, 0.0]])).any()
 
 
-def test_a_person_who_sits_on_a_seat_sits_in_the_air_or_stands() -> None:
-    pose = sitting_pose(0.45)
-    assert sits(pose, HIPS, KNEES)
-    assert not stands(pose, HIPS)
-    assert seated(THINGS, pose, HIPS)
-    assert not seated([TABLE, WALL], pose, HIPS)  # no seat at all
-    assert not seated(THINGS, pose + np.array([0.6, 0, 0]), HIPS)  # beside it
-    assert not seated(THINGS, pose + 0.15 * UP, HIPS)  # too high above it
-    assert not seated(THINGS, pose - 0.15 * UP, HIPS)  # within it
+def test_a_person_sits_on_a_seat_or_in_the_air_or_stands() -> None:
+    pose = sitting_pose()
+    assert sits(held(pose), LEGS, 25).all()
+    assert not stands(pose, LEGS)
+    assert seated(THINGS, pose, LEGS)
+    assert not seated([TABLE, WALL], pose, LEGS)  # no seat at all
+    assert not seated(THINGS, pose + np.array([0.6, 0, 0]), LEGS)  # beside it
+    assert not seated(THINGS, pose + 0.15 * UP, LEGS)  # too high above it
+    assert not seated(THINGS, pose - 0.15 * UP, LEGS)  # within it
     standing = standing_pose()
-    assert stands(standing, HIPS)
-    assert not sits(standing, HIPS, KNEES)
-    assert not sits(standing - 0.4 * UP, HIPS, KNEES)  # as low, but the thighs hang
-    assert sits(pose + 5 * UP, HIPS, KNEES, floor_m=5.0)
+    assert stands(standing, LEGS)
+    assert not sits(held(standing), LEGS, 25).any()
+    assert not sits(held(standing - 0.4 * UP), LEGS, 25).any()  # as low, but the thighs hang
+    assert sits(held(pose + 5 * UP), LEGS, 25, floor_m=5.0).all()
+
+
+def test_on_a_high_stool_thighs_slope_and_feet_are_ahead() -> None:
+    pose = sitting_pose(0.8)
+    pose[list(LEGS.knees), 2] -= 0.35  # 41 degrees
+    assert sits(held(pose), LEGS, 25).all()
+    pose[list(LEGS.ankles), 1] = 0.4  # under the body: bent knees, which carry it
+    assert not sits(held(pose), LEGS, 25).any()
+
+
+def test_who_goes_down_and_up_again_does_not_sit() -> None:
+    down = np.abs(np.arange(60) % 20 - 10)[:, None, None] * 0.03 * UP
+    assert not sits(sitting_pose() + down, LEGS, 25).any()
+    paused = down.copy()
+    paused[30:43] = down[30]  # half a second at the bottom
+    assert sits(sitting_pose() + paused, LEGS, 25).nonzero()[0].tolist() == list(range(31, 43))
+
+
+def test_naive_twin_of_sitting() -> None:
+    random = np.random.default_rng(7)
+    motion = sitting_pose() + np.cumsum(random.normal(0, 0.0025, (3, 80, 15, 3)), 1)
+    found = sits(motion, LEGS, 25)
+    assert 0.1 < found.mean() < 0.9
+    for n in range(3):
+        good = []
+        for t in range(80):
+            pose, step = motion[n, t], motion[n, max(t, 1)] - motion[n, max(t, 1) - 1]
+            slopes = []
+            for hip, knee in zip(LEGS.hips, LEGS.knees, strict=True):
+                x, y, z = pose[knee] - pose[hip]
+                slopes.append(np.degrees(np.arctan2(abs(z), np.hypot(x, y))))
+            root = pose[LEGS.root[0]]
+            chair = 0.3 <= root[2] <= 0.65 and max(slopes) <= 35
+            good.append(chair and np.linalg.norm(step[LEGS.root[0]]) * 25 < 0.15)
+        for t in range(80):
+            runs = [range(first, first + 12) for first in range(max(0, t - 11), min(t, 68) + 1)]
+            assert found[n, t] == any(all(good[k] for k in run) for run in runs)
 
 
 def test_seats_do_not_count_as_obstacles_for_who_sits_but_tables_do() -> None:
-    pose = sitting_pose(0.38)  # sunk 7 cm into the stool, hips 3 cm above its top
-    pose[0] = (-1.0, 0.3, 0.40)
+    pose = sitting_pose(0.35)  # sunk into the stool: hips 6 cm below its top
     deep = joint_depth(THINGS, pose, np.array(False))
-    assert deep.max() == pytest.approx(0.05, abs=1e-6)
+    assert deep.max() == pytest.approx(0.06, abs=1e-6)
     assert joint_depth(THINGS, pose, np.array(True)).max() == 0
     table = replace(TABLE, position=np.array([-1.0, 0.3, 0.35]))
     assert joint_depth([table], pose, np.array(True)).max() > 0.2
@@ -135,13 +174,13 @@ def test_seats_do_not_count_as_obstacles_for_who_sits_but_tables_do() -> None:
 def test_feet_are_on_the_floor_or_on_a_step() -> None:
     pose = standing_pose()
     stepping = pose.copy()
-    stepping[ANKLES[0], 2] += 0.4  # the other foot is still down
+    stepping[LEGS.ankles[0], 2] += 0.4  # the other foot is still down
     pair = np.stack([pose, stepping])
-    assert grounded([], pair, ANKLES).all()
-    assert not grounded([], pair + 0.2 * UP, ANKLES).any()  # they float
-    assert not grounded([], pair - 0.2 * UP, ANKLES).any()  # they wade
+    assert grounded([], pair, LEGS).all()
+    assert not grounded([], pair + 0.2 * UP, LEGS).any()  # they float
+    assert not grounded([], pair - 0.2 * UP, LEGS).any()  # they wade
     step = SceneObject("step", "occluder", "box", (2, 2, 0.2), (0, 0, 0.1))
-    assert grounded([step], pair + 0.2 * UP, ANKLES).all()
+    assert grounded([step], pair + 0.2 * UP, LEGS).all()
 
 
 def test_goals_among_decoys() -> None:

@@ -9,20 +9,29 @@ there.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from motioncast.core.scene_object import SceneObject
 from motioncast.core.shapes import signed_distance
+from motioncast.core.skeleton import Skeleton
+from motioncast.metrics.alignment import root_joints
 
 SITTING_M = (0.30, 0.65)
-"""Height of the middle of the hips above the floor while somebody sits; above it somebody stands."""
+"""Height of the pelvis above the floor on a chair."""
 
-LEVEL_RAD = np.radians(35)
-"""Thighs of who sits are at most this far from level."""
+LEVEL_RAD, SLOPING_RAD = np.radians(35), np.radians(50)
+"""Thighs are at most this far from level on a chair, and on a high stool."""
+
+BEFORE_M = 0.22
+"""On a high stool the feet are this far before the pelvis: without a seat the body would fall."""
+
+STILL_M_S, STILL_S = 0.15, 0.5
+"""Who sits keeps the pelvis slower than this for so long; a squat or a jump is no seat."""
 
 SEAT_M = 0.20
-"""A seat holds whose hips are at most this far above its top: 10 cm within the flesh, and 10 cm of tolerance."""
+"""A seat holds whose pelvis is at most this far above its top: 10 cm of flesh, and 10 cm of tolerance."""
 
 ANKLE_M = 0.16
 """A foot stands on what is at most this far below its ankle: about 9 cm, and a raised heel."""
@@ -60,39 +69,73 @@ def joint_depth(things: Sequence[SceneObject], motion: np.ndarray, sitting: np.n
     return deepest
 
 
-def sits(motion: np.ndarray, hips: tuple[int, int], knees: tuple[int, int], floor_m: float = 0.0) -> np.ndarray:
-    """Who sits, ``(...)``: hips 30 to 65 cm above the floor, and both thighs within 35 degrees of level.
+class Legs(NamedTuple):
+    """Joints that tell who sits and who stands.
 
-    Args:
-        motion: ``(..., joints, 3)`` metres, z up.
+    Attributes:
+        root: The pelvis, or both hips where there is none (:func:`motioncast.metrics.alignment.root_joints`).
         hips: Left and right hip.
         knees: Left and right knee.
-        floor_m: Height of the floor.
-
-    Example:
-        >>> hips, knees, feet = ([[-0.1, y, z], [0.1, y, z]] for y, z in ((0, 0.5), (0.4, 0.45), (0.4, 0.1)))
-        >>> bool(sits(np.array(hips + knees), (0, 1), (2, 3))), bool(sits(np.array(hips + feet), (0, 1), (2, 3)))
-        (True, False)
+        ankles: Left and right ankle.
     """
-    thighs = motion[..., list(knees), :] - motion[..., list(hips), :]
-    level = np.arctan2(np.abs(thighs[..., 2]), np.linalg.norm(thighs[..., :2], axis=-1)) <= LEVEL_RAD
-    height = _hip_height(motion, hips, floor_m)
-    return (SITTING_M[0] <= height) & (height <= SITTING_M[1]) & level.all(-1)
+
+    root: tuple[int, ...]
+    hips: tuple[int, int]
+    knees: tuple[int, int]
+    ankles: tuple[int, int]
+
+    @classmethod
+    def of(cls, skeleton: Skeleton) -> Legs:
+        """Those of a skeleton."""
+        pairs = ((skeleton.landmarks.index(f"left_{place}"), skeleton.landmarks.index(f"right_{place}"))
+                 for place in ("hip", "knee", "ankle"))  # fmt: skip
+        return cls(root_joints(skeleton), *pairs)
 
 
-def stands(motion: np.ndarray, hips: tuple[int, int], floor_m: float = 0.0) -> np.ndarray:
-    """Who stands or walks, ``(...)``: the hips are more than 65 cm above the floor.
+def sits(motion: np.ndarray, legs: Legs, fps: float, floor_m: float = 0.0) -> np.ndarray:
+    """Who sits, ``(..., time)``.
+
+    The pelvis hardly moves for half a second, and either it is 30 to 65 cm above the floor with both thighs within 35
+    degrees of level, or it is higher, both thighs are within 50 degrees of level, and the feet are so far before it
+    that only a seat can carry it.
+
+    Args:
+        motion: ``(..., time, joints, 3)`` metres, z up.
+        legs: The joints.
+        fps: Frames a second.
+        floor_m: Height of the floor.
+    """
+    motion = np.asarray(motion, np.float64)
+    root = motion[..., list(legs.root), :].mean(-2)
+    thighs = motion[..., list(legs.knees), :] - motion[..., list(legs.hips), :]
+    slope = np.arctan2(np.abs(thighs[..., 2]), np.linalg.norm(thighs[..., :2], axis=-1)).max(-1)
+    ahead = thighs[..., :2].mean(-2)
+    feet = motion[..., list(legs.ankles), :2].mean(-2) - root[..., :2]
+    before = (feet * ahead).sum(-1) / np.maximum(np.linalg.norm(ahead, axis=-1), 1e-9)
+    height = root[..., 2] - floor_m
+    chair = (height <= SITTING_M[1]) & (slope <= LEVEL_RAD)
+    stool = (height > SITTING_M[1]) & (slope <= SLOPING_RAD) & (before >= BEFORE_M)
+    speed = np.linalg.norm(np.diff(root, axis=-2), axis=-1) * fps
+    still = np.concatenate([speed[..., :1], speed], -1) < STILL_M_S
+    return _lasting(still & (height >= SITTING_M[0]) & (chair | stool), round(STILL_S * fps))
+
+
+def _lasting(mask: np.ndarray, frames: int) -> np.ndarray:
+    """Where a mask ``(..., time)`` holds for so many frames in a row or more."""
+    ends = [(0, 0)] * (mask.ndim - 1) + [(frames - 1, frames - 1)]
+    whole = np.all(np.lib.stride_tricks.sliding_window_view(np.pad(mask, ends), frames, axis=-1), -1)
+    return np.any(np.lib.stride_tricks.sliding_window_view(whole, frames, axis=-1), -1)
+
+
+def stands(motion: np.ndarray, legs: Legs, floor_m: float = 0.0) -> np.ndarray:
+    """Who is upright, ``(...)``: the pelvis is more than 65 cm above the floor. Who sits on a high stool is, too.
 
     Args:
         motion: ``(..., joints, 3)`` metres, z up.
-        hips: Left and right hip.
+        legs: The joints.
         floor_m: Height of the floor.
     """
-    return _hip_height(motion, hips, floor_m) > SITTING_M[1]
-
-
-def _hip_height(motion: np.ndarray, hips: tuple[int, int], floor_m: float) -> np.ndarray:
-    return motion[..., list(hips), 2].mean(-1) - floor_m
+    return motion[..., list(legs.root), 2].mean(-1) - floor_m > SITTING_M[1]
 
 
 def above_top(things: Sequence[SceneObject], points: np.ndarray, floor_m: float = -np.inf) -> np.ndarray:
@@ -134,34 +177,32 @@ def _within(away: np.ndarray, half: np.ndarray) -> np.ndarray:
     return np.einsum("...i,...i", away, away) <= half @ half
 
 
-def seated(things: Sequence[SceneObject], motion: np.ndarray, hips: tuple[int, int]) -> np.ndarray:
-    """Who has a seat under the middle of the hips, at most 20 cm below it, ``(...)``.
+def seated(things: Sequence[SceneObject], motion: np.ndarray, legs: Legs) -> np.ndarray:
+    """Who has a seat under the pelvis, at most 20 cm below it, ``(...)``.
 
     Ask it of those who sit (:func:`sits`).
 
     Args:
         things: The objects; those of the category ``sittable`` are seats.
         motion: ``(..., joints, 3)`` metres, z up.
-        hips: Left and right hip.
+        legs: The joints.
     """
     seats = [thing for thing in things if thing.category == "sittable"]
-    return above_top(seats, motion[..., list(hips), :].mean(-2)) <= SEAT_M
+    return above_top(seats, motion[..., list(legs.root), :].mean(-2)) <= SEAT_M
 
 
-def grounded(
-    things: Sequence[SceneObject], motion: np.ndarray, ankles: tuple[int, int], floor_m: float = 0.0
-) -> np.ndarray:
+def grounded(things: Sequence[SceneObject], motion: np.ndarray, legs: Legs, floor_m: float = 0.0) -> np.ndarray:
     """Whose lower ankle is at most 16 cm above the floor or a top below it, and at most 3 cm under it, ``(...)``.
 
-    Ask it of those who stand (:func:`stands`).
+    Ask it of those who stand (:func:`stands`) and do not sit.
 
     Args:
         things: The objects: any may be a step.
         motion: ``(..., joints, 3)`` metres, z up.
-        ankles: Left and right ankle.
+        legs: The joints.
         floor_m: Height of the floor.
     """
-    pair = motion[..., list(ankles), :]
+    pair = motion[..., list(legs.ankles), :]
     lower = np.take_along_axis(pair, pair[..., 2].argmin(-1)[..., None, None], -2)[..., 0, :]
     height = above_top(things, lower, floor_m)
     return (height >= -SUNK_M) & (height <= ANKLE_M)

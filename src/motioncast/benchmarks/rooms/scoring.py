@@ -13,7 +13,7 @@ import numpy as np
 from motioncast.benchmarks.rooms.tally import Mean, Measured, Pooled, Ratio, Tally
 from motioncast.benchmarks.rooms.windows import PROTOCOL, RoomWindow
 from motioncast.core.skeletons import SKELETONS
-from motioncast.metrics.furniture import crosses, grounded, joint_depth, nearest_of_kind, seated, sits, stands
+from motioncast.metrics.furniture import Legs, crosses, grounded, joint_depth, nearest_of_kind, seated, sits, stands
 from motioncast.metrics.ndms import Dictionary, similarity
 from motioncast.metrics.paths import FASTEST_M_S, path_length_m, root_path, wasserstein_1
 from motioncast.metrics.people import gaps
@@ -26,9 +26,8 @@ from motioncast.metrics.words import motion_words, with_seam
 
 SKELETON = SKELETONS[PROTOCOL.skeleton]
 FPS, HORIZON = PROTOCOL.fps, PROTOCOL.horizon
-HIPS, KNEES, ANKLES = (
-    (SKELETON.index(f"left_{place}"), SKELETON.index(f"right_{place}")) for place in ("hip", "knee", "ankle")
-)
+LEGS = Legs.of(SKELETON)
+HIPS = LEGS.hips
 SECONDS = range(1, HORIZON // round(FPS) + 1)
 
 DEEP_M = (0.02, 0.05)
@@ -131,15 +130,16 @@ def _second(second: int) -> slice:
 def things(tally: Tally, number: int, window: RoomWindow, body: np.ndarray) -> np.ndarray:
     """Joints in things, seats under who sits, floor under who stands; depths of the deepest joint, ``(n,)``."""
     objects, floor = window.scene.objects, window.scene.floor_m or 0.0
+    sitting = sits(body.swapaxes(0, 1), LEGS, FPS, floor).T[::EVERY][window.seen[::EVERY]]
     body = body[::EVERY][window.seen[::EVERY]].astype(np.float64)
-    sitting, standing = sits(body, HIPS, KNEES, floor), stands(body, HIPS, floor)
+    standing = stands(body, LEGS, floor) & ~sitting
     deepest = joint_depth(objects, body, sitting).max(-1)
     tally.add(number, "depth_in_things", deepest, "m")
     for depth in DEEP_M:
         tally.add(number, f"frames_deeper_than_{100 * depth:.0f}_cm", deepest > depth, "1")
     tally.add(number, "sitting_frames", sitting, "1")
-    tally.add(number, "seat_under_sitting", seated(objects, body[sitting], HIPS), "1")
-    tally.add(number, "floor_under_standing", grounded(objects, body[standing], ANKLES, floor), "1")
+    tally.add(number, "seat_under_sitting", seated(objects, body[sitting], LEGS), "1")
+    tally.add(number, "floor_under_standing", grounded(objects, body[standing], LEGS, floor), "1")
     return deepest
 
 
@@ -158,13 +158,18 @@ def company(tally: Tally, number: int, window: RoomWindow, body: np.ndarray) -> 
 
 
 def goals(tally: Tally, number: int, window: RoomWindow, body: np.ndarray) -> None:
-    """Whether people are at what they truly went to, when they truly did, among all of its kind."""
+    """Whether people are at what they truly went to, when they truly did, among all of its kind.
+
+    Many are there already; apart stands what is still ahead: at now another of its kind is nearer.
+    """
+    objects, root = window.scene.objects, list(LEGS.root)
     for goal in window.goals:
-        used = window.scene.objects[goal.thing]
-        kind = sum(thing.category == used.category for thing in window.scene.objects)
-        place = body[goal.frame - 1, goal.person, list(HIPS)].mean(0)
-        for what in ("goal", f"goal_{goal.kind}"):
-            tally.add(number, f"{what}_accuracy", nearest_of_kind(window.scene.objects, used, place), "1")
+        used = objects[goal.thing]
+        kind = sum(thing.category == used.category for thing in objects)
+        now, then = (motion[goal.person, root].mean(0) for motion in (window.scene.positions[-1], body[goal.frame - 1]))
+        ahead = not nearest_of_kind(objects, used, now)
+        for what in ("goal", f"goal_{goal.kind}", *("goal_ahead",) * ahead):
+            tally.add(number, f"{what}_accuracy", nearest_of_kind(objects, used, then), "1")
             tally.add(number, f"{what}_chance", np.array(1 / kind), "1")
 
 
@@ -179,9 +184,9 @@ def feet(tally: Tally, number: int, window: RoomWindow, body: np.ndarray) -> Non
         frames = seen[person]
         if frames.sum() > 1:
             # ankles are not at the floor: the height at which each of this person's own stands
-            ground = np.percentile(way[frames][:, ANKLES, 2], 5, axis=0).tolist()
+            ground = np.percentile(way[frames][:, LEGS.ankles, 2], 5, axis=0).tolist()
             mask = np.broadcast_to(frames[:, None], body.shape[:1] + body.shape[2:3])
-            tally.add(number, "foot_skating", foot_skating(future[person], ANKLES, ground, FPS, mask), "m/s")
+            tally.add(number, "foot_skating", foot_skating(future[person], LEGS.ankles, ground, FPS, mask), "m/s")
             tally.add(number, "real_velocity_change", velocity_change(way[frames], FPS), "m/s")
 
 

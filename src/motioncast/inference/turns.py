@@ -50,11 +50,11 @@ def _largest_root(m: np.ndarray) -> np.ndarray:
     determinant = (m[0] * cofactors[0]).sum(0)
     # the square of the sum is sum(s^2) + 2 sum(s s'), and sum(s s') at most sqrt(3 sum((s s')^2)): close from above
     root = np.sqrt(squares + 2 * np.sqrt(3 * pairs))
-    constant = squares * squares - 4 * pairs
+    constant, twice, linear = squares * squares - 4 * pairs, 2 * squares, 8 * determinant
     for _ in range(STEPS):
         square = root * root
-        value = (square - 2 * squares) * square - 8 * determinant * root + constant
-        slope = 4 * (square - squares) * root - 8 * determinant
+        value = (square - twice) * square - linear * root + constant
+        slope = 4 * (square - squares) * root - linear
         step = np.maximum(value, 0) / np.maximum(slope, 1e-30)
         root = root - step
         if step.max(initial=0) < 1e-14:

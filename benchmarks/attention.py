@@ -150,7 +150,7 @@ def draw(panels: dict[str, Pairs], path: Path) -> None:
     figure = Figure(figsize=(3.2 * len(panels), 3), layout="constrained")
     for axes, (name, pairs) in zip(np.atleast_1d(figure.subplots(1, len(panels))), panels.items(), strict=True):
         for kind, colour, label in ((~pairs.couple, "tab:blue", "strangers"), (pairs.couple, "tab:orange", "couple")):
-            axes.scatter(pairs.distance_m[kind], 100 * pairs.attention[kind], s=2, color=colour, label=label)
+            axes.scatter(pairs.distance_m[kind], 100 * pairs.attention[kind], s=1.5, color=colour, label=label)
         tenths = np.array_split(pairs.distance_m.argsort(), 10)
         x, y = ([np.median(values[tenth]) for tenth in tenths] for values in (pairs.distance_m, 100 * pairs.attention))
         axes.plot(x, y, color="black", linewidth=1.5, label="median")
@@ -161,7 +161,7 @@ def draw(panels: dict[str, Pairs], path: Path) -> None:
     figure.axes[0].set_ylabel("attention to the other (%)")
     figure.axes[0].legend(frameon=False, fontsize=8, markerscale=3)
     with atomic_write(path) as temporary:
-        figure.savefig(temporary, dpi=100)
+        figure.savefig(temporary, dpi=90)
 
 
 def main() -> None:

@@ -36,7 +36,7 @@ RUNGS: dict[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "+ learned embeddings": (PLAIN, {"permuted": False, "grid_width": 0}),
     "+ augmentation": ({}, {"grid_width": 0}),
     "+ grid": ({}, {}),
-    "mask, grid and loss as released": ({}, {"preset": "release", "cells": 3}),
+    "all as released": ({}, {"preset": "release", "cells": 3}),
 }
 """For each rung what differs from the recipe, and from the sizes."""
 

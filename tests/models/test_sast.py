@@ -110,7 +110,7 @@ class Products(TorchFunctionMode):
     def __torch_function__(self, function, types, arguments=(), options=None):
         if function is functional.linear:
             left, right = arguments[0], arguments[1].transpose(0, 1)
-        elif function is torch.Tensor.__matmul__:
+        elif function is torch.Tensor.matmul:  # the operator @
             left, right = arguments
         elif function is functional.scaled_dot_product_attention:
             query, key, _ = arguments

@@ -18,7 +18,7 @@ import numpy as np
 
 from motioncast.benchmarks.result import Row, save_result, shipped_results
 from motioncast.benchmarks.rooms.run import MADE, ROOMS, forecast_rooms, real_words, result_of, room_windows, score
-from motioncast.benchmarks.rooms.scoring import HIPS
+from motioncast.benchmarks.rooms.scoring import HIPS, ahead
 from motioncast.benchmarks.rooms.tally import rows
 from motioncast.benchmarks.rooms.windows import PROTOCOL, RoomWindow, checksum, manifest, protocol_hash
 from motioncast.core.forecaster import Forecaster
@@ -246,11 +246,13 @@ def pictures(table: Table) -> None:
 
 
 def too_few(windows: Sequence[RoomWindow]) -> str:
-    kinds = [goal.kind for window in windows for goal in window.goals]
-    told = (
-        f"{count} {what}{' (too few: not measurable)' * (count < FEWEST)}"
-        for what, count in (("such events", len(kinds)), ("of them seats", kinds.count("sit")))
-    )
+    goals = [(window, goal) for window in windows for goal in window.goals]
+    counts = {
+        "such events": len(goals),
+        "of them with another nearer at first": sum(ahead(*goal) for goal in goals),
+        "of them seats": sum(goal.kind == "sit" for _, goal in goals),
+    }
+    told = (f"{count} {what}{' (too few: not measurable)' * (count < FEWEST)}" for what, count in counts.items())
     return ", ".join(told) + "."
 
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from motioncast.benchmarks.rooms.tally import Mean, Measured, Pooled, Ratio, Tally
-from motioncast.benchmarks.rooms.windows import PROTOCOL, RoomWindow
+from motioncast.benchmarks.rooms.windows import PROTOCOL, Goal, RoomWindow
 from motioncast.core.skeletons import SKELETONS
 from motioncast.metrics.furniture import Legs, crosses, grounded, joint_depth, nearest_of_kind, seated, sits, stands
 from motioncast.metrics.ndms import Dictionary, similarity
@@ -158,19 +158,20 @@ def company(tally: Tally, number: int, window: RoomWindow, body: np.ndarray) -> 
 
 
 def goals(tally: Tally, number: int, window: RoomWindow, body: np.ndarray) -> None:
-    """Whether people are at what they truly went to, when they truly did, among all of its kind.
-
-    Many are there already; apart stands what is still ahead: at now another of its kind is nearer.
-    """
-    objects, root = window.scene.objects, list(LEGS.root)
+    """Whether people are at what they truly went to, when they truly did, among all of its kind."""
+    objects = window.scene.objects
     for goal in window.goals:
-        used = objects[goal.thing]
+        used, place = objects[goal.thing], body[goal.frame - 1, goal.person, list(LEGS.root)].mean(0)
         kind = sum(thing.category == used.category for thing in objects)
-        now, then = (motion[goal.person, root].mean(0) for motion in (window.scene.positions[-1], body[goal.frame - 1]))
-        ahead = not nearest_of_kind(objects, used, now)
-        for what in ("goal", f"goal_{goal.kind}", *("goal_ahead",) * ahead):
-            tally.add(number, f"{what}_accuracy", nearest_of_kind(objects, used, then), "1")
+        for what in ("goal", f"goal_{goal.kind}", *("goal_ahead",) * ahead(window, goal)):
+            tally.add(number, f"{what}_accuracy", nearest_of_kind(objects, used, place), "1")
             tally.add(number, f"{what}_chance", np.array(1 / kind), "1")
+
+
+def ahead(window: RoomWindow, goal: Goal) -> bool:
+    """Whether the way is still ahead: many are there from the start, but here another of the kind is nearer at now."""
+    place = window.scene.positions[-1, goal.person, list(LEGS.root)].mean(0)
+    return not nearest_of_kind(window.scene.objects, window.scene.objects[goal.thing], place)
 
 
 def feet(tally: Tally, number: int, window: RoomWindow, body: np.ndarray) -> None:

@@ -132,7 +132,8 @@ def test_progress_counts_the_passes() -> None:
     np.testing.assert_allclose(told, np.arange(1, 17) / 16)  # 2 samples of 2 horizons of 4 steps
 
 
-def test_beyond_the_horizon_the_last_second_of_the_answer_is_the_history() -> None:
+def test_beyond_the_horizon_the_last_second_of_the_answer_is_the_history(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("motioncast.inference.denoiser.eased", lambda history, future: future)
     model, objects, denoiser = toy()
     answer = model.forecast(room(), horizon_s=3.4)
     assert answer.samples.shape[1] == 102
@@ -199,3 +200,16 @@ def test_a_model_that_denoises_is_found_by_its_card_and_counted_once(tmp_path: P
     (tmp_path / "toy.scene.onnx").unlink()
     with pytest.raises(InputError, match=r"no file .*toy\.scene\.onnx"):
         model.forecast(room())
+
+
+def test_the_first_steps_go_on_with_the_last_one_seen_and_the_rest_is_as_it_was() -> None:
+    from motioncast.inference.denoiser import eased
+
+    seconds = np.arange(25)[:, None, None, None] / 25
+    history = seconds * np.array([1.0, 0.5, 0.0])
+    future = history[-1] + np.sin(np.arange(1, 251) / 9)[:, None, None, None] * np.array([0.0, -0.3, 0.1])
+    whole = np.concatenate([history, eased(history, future)])
+    jumps = np.linalg.norm(np.diff(whole, n=2, axis=0), axis=-1)[:, 0, 0]
+    abrupt = np.linalg.norm(np.diff(np.concatenate([history, future]), n=2, axis=0), axis=-1)[:, 0, 0]
+    assert jumps[23:30].max() < 0.5 * abrupt[23:30].max()
+    np.testing.assert_allclose(whole[75:], future[50:], atol=1e-4)

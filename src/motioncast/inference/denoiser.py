@@ -23,6 +23,10 @@ from motioncast.inference.diffusion import SAMPLERS, Noise, Schedule, noise_of
 from motioncast.inference.question import Question
 from motioncast.inference.shipped import ShippedForecaster
 
+SEAM_FRAMES, SEAM_FADES = 3, 0.85
+"""Frames over which the last velocity seen gives way to the forecast's, and what is left of the detour after each
+frame; on validation rooms the velocity then changes as it does within real motion."""
+
 
 class Seen(NamedTuple):
     """What people see around them.
@@ -140,9 +144,29 @@ class DiffusionForecaster(ShippedForecaster):
             return clean.astype(np.float64)
 
         SAMPLERS[self.sampler](self.schedule.levels(self.steps), denoise, noise)
-        return estimate + shift  # the last estimate is the answer of every sampler
+        return eased(near, estimate) + shift  # the last estimate is the answer of every sampler
 
     @property
     def schedule(self) -> Schedule:
         """The schedule of the training."""
         return Schedule.cosine(self.card.diffusion["steps"])
+
+
+def eased(history: np.ndarray, future: np.ndarray) -> np.ndarray:
+    """A future that goes on with the last step seen before it goes its own way; the detour fades within a second.
+
+    Args:
+        history: ``(time, people, joints, 3)``.
+        future: What follows, in the same world.
+
+    Example:
+        >>> walk = np.arange(4.0)[:, None, None, None] * np.ones((1, 1, 1, 3))
+        >>> stopped = np.repeat(walk[-1:], 3, 0)
+        >>> eased(walk, stopped)[:, 0, 0, 0].round(3).tolist()
+        [3.75, 4.062, 4.084]
+    """
+    steps = np.diff(future, axis=0, prepend=history[-1:])
+    frame = np.arange(len(future))[:, None, None, None]
+    share = np.maximum(1 - (frame + 1) / (SEAM_FRAMES + 1), 0)
+    detour = np.cumsum(share * (history[-1] - history[-2] - steps), 0)
+    return future + detour * SEAM_FADES**frame

@@ -84,7 +84,7 @@ export class Controls {
     const count = Math.max(this.stays.length, 1);
     const lane = gaps ? Math.min(Math.max(Math.floor(36 / count), 2), 6) : Math.max(Math.ceil(8 / count), 1);
     this.slider.style.setProperty("--tall", `${lane * count}px`);
-    this.slider.style.setProperty("--lanes", lanes(this.stays, begin, end));
+    this.slider.style.setProperty("--lanes", lanes(this.stays, begin, end, gaps));
     for (const speed of SPEEDS) this.speed.append(new Option(`${speed}×`, `${speed}`));
     for (const warning of about.warnings) {
       const item = document.createElement("li");

@@ -22,15 +22,19 @@ export function staysOf({ about, arrays }: Page): Stay[][] {
   });
 }
 
-/** The lanes as a CSS background, one below the other: grey up to now, then in each person's colour. */
-export function lanes(stays: Stay[][], first: number, last: number): string {
+/**
+ * The lanes as a CSS background, one below the other: grey up to now, then in each person's colour. Where people come
+ * and go, the grey has a `tint` of it, so that one finds out whose lane it is.
+ */
+export function lanes(stays: Stay[][], first: number, last: number, tint: boolean): string {
   const place = (time: number) => `${((100 * (Math.min(Math.max(time, first), last) - first)) / (last - first)).toFixed(2)}%`;
   return stays.map((own, person) => {
     const color = personColor(person).getStyle();
+    const past = tint ? `color-mix(in srgb, ${color} 30%, var(--seen))` : "var(--seen)";
     const stops = own.flatMap(([from, to]) => {
       // a frame stands for the time around it, so that a stay of one frame is seen
       const [start, now, end] = [from - 0.5, Math.min(Math.max(0, from - 0.5), to + 0.5), to + 0.5].map(place);
-      return [`transparent ${start}`, `var(--seen) ${start} ${now}`, `${color} ${now} ${end}`, `transparent ${end}`];
+      return [`transparent ${start}`, `${past} ${start} ${now}`, `${color} ${now} ${end}`, `transparent ${end}`];
     });
     const top = stays.length > 1 ? `${(100 * person) / (stays.length - 1)}%` : "0";
     return `linear-gradient(to right, ${stops.join(", ") || "transparent, transparent"}) 0 ${top} / 100% ${100 / stays.length}% no-repeat`;

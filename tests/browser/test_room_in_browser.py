@@ -159,7 +159,7 @@ def test_who_comes_and_goes_is_read_on_the_time_axis(browser: chromium.Chromium,
     lanes = str(browser.evaluate("document.getElementById('time').style.getPropertyValue('--lanes')")).split("linear")
     assert "transparent 0.00%" in lanes[1], "ada is there from the first frame on"
     begin = 100 * 9.5 / 59  # half a frame before the eleventh of sixty
-    assert f"var(--seen) {begin:.2f}%" in lanes[2]
+    assert f"var(--seen)) {begin:.2f}%" in lanes[2]
 
 
 def test_a_phone_shows_the_room_too(browser: chromium.Chromium, page: Path) -> None:

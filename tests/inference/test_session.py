@@ -63,9 +63,10 @@ def test_far_from_the_origin_the_answer_is_as_exact(model: GraphForecaster) -> N
 def test_every_shipped_model_states_its_doubt_and_is_measured() -> None:
     for card in list_models():
         if card.parameters:
-            table = np.array(card.radius["levels"]["0.9"])
-            assert table.shape == (card.horizon, len(card.joints)), card.name
-            assert card.radius["n_takes"] > 0
+            if not card.stochastic:  # whose samples say how far apart futures are
+                table = np.array(card.radius["levels"]["0.9"])
+                assert table.shape == (card.horizon, len(card.joints)), card.name
+                assert card.radius["n_takes"] > 0
             assert card.checksum
             assert card.licence
 

@@ -27,10 +27,13 @@ from motioncast.benchmarks.protocols import windows_of
 from motioncast.benchmarks.scoring import sources_of
 from motioncast.datasets.windows import COMPOSED, Windows
 from motioncast.formats.files import atomic_write
+from motioncast.inference.registry import load
+from motioncast.inference.session import GraphForecaster
 from motioncast.metrics.bootstrap import draws, units
 from motioncast.models import build
 from motioncast.training.recipe import read_recipe, read_run
 from motioncast.training.weights import load_weights
+from motioncast.training.windows_task import final
 
 SHIPPED = ("somoformer", "somoformer-fast")
 PELVIS = 0
@@ -79,20 +82,39 @@ def spearman(x: np.ndarray, y: np.ndarray, weights: np.ndarray) -> np.ndarray:
 
 
 def shipped(name: str) -> nn.Module:
-    """The torch model of a graph that ships; what the exporter left without a name stands in the model's order."""
+    """The torch model of a graph that ships; what the exporter left without a name stands in the model's order.
+
+    Raises:
+        ValueError: If it answers otherwise than the graph.
+    """
     recipe = read_recipe(name)
-    model = build(recipe.model, recipe.sizes)
+    model = build(recipe.model, recipe.sizes).eval()
     tensors = onnx.load(str(resources.files("motioncast") / "weights" / f"{name}.onnx")).graph.initializer
     arrays = {tensor.name.removesuffix(".half"): numpy_helper.to_array(tensor) for tensor in tensors}
     named = {name.removeprefix("model."): array for name, array in arrays.items() if name.startswith("model.")}
-    # matrices of linear layers are stored transposed
-    others = iter([array.T if "MatMul" in name else array for name, array in arrays.items() if name[:5] == "onnx:"])
+    others = iter([unfolded(name, array) for name, array in arrays.items() if name.startswith("onnx::")])
     state = model.state_dict()
-    for name, value in state.items():
-        array = named[name] if name in named else next(others)
-        state[name] = torch.from_numpy(array.astype(np.float32)).view_as(value)
+    for entry, value in state.items():
+        array = named[entry] if entry in named else next(others)
+        state[entry] = torch.from_numpy(array.astype(np.float32)).reshape(value.shape)
     model.load_state_dict(state)
-    return model.eval()
+    forecaster = load(name)
+    assert isinstance(forecaster, GraphForecaster)
+    card = forecaster.card
+    history = torch.randn(1, card.history, 3, len(card.joints), 3, generator=torch.Generator().manual_seed(0))
+    observed = torch.ones(history.shape[:-1], dtype=torch.bool)
+    with torch.no_grad():
+        answer = final(model(history, observed)).numpy()
+    if np.abs(answer - forecaster.run(history.numpy(), observed.numpy())).max() > 1e-3:
+        raise ValueError(f"the weights of {name} were read in another order than its graph has; adapt unfolded()")
+    return model
+
+
+def unfolded(name: str, array: np.ndarray) -> np.ndarray:
+    """A tensor as the model holds it: the exporter transposes what is multiplied and what is split."""
+    if "MatMul" in name:
+        return array.T
+    return array.swapaxes(1, 3) if "Split" in name else array
 
 
 def attention(model: nn.Module, history: Tensor, observed: Tensor) -> Tensor:

@@ -127,12 +127,11 @@ class SASTConfig:
 PRESETS: dict[str, SASTConfig] = {
     "motioncast": SASTConfig(),
     "light": SASTConfig(
-        channels=(64, 128, 192), others_channels=(64, 64, 64), scene_width=128, scene_layers=1, people_width=64,
-        people_layers=1, conv_dropout=0.0,
+        channels=(64, 128, 192), others_channels=(64, 64, 64), scene_width=128, scene_layers=2, conv_dropout=0.0
     ),
     "release": SASTConfig(preset="release", skeleton="hik29", horizon=279, conv_dropout=0.2),
     "paper": SASTConfig(preset="paper", skeleton="hik29", horizon=279, conv_dropout=0.2),
-}  # fmt: skip
+}
 """Ours at the paper's size, ours for two CPU cores, and the published networks."""
 
 

@@ -10,8 +10,9 @@ torch = pytest.importorskip("torch")
 from torch.nn import functional  # noqa: E402
 from torch.overrides import TorchFunctionMode  # noqa: E402
 
+from motioncast.core.basis_points import WIDTH  # noqa: E402
 from motioncast.core.skeletons import SKELETONS  # noqa: E402
-from motioncast.models.sast import CODE, PRESETS, SAST, SASTConfig  # noqa: E402
+from motioncast.models.sast import PRESETS, SAST, SASTConfig  # noqa: E402
 from motioncast.nn.frames import turn  # noqa: E402
 
 pytestmark = pytest.mark.torch
@@ -56,7 +57,7 @@ def inputs(config: SASTConfig, people: int = 3, objects: int = 4, batch: int = 1
         "noisy": normal(batch, people, config.horizon, joints, 3),
         "estimate": normal(batch, config.horizon, people, joints, 3),
         "level": torch.tensor(3.0),
-        "codes": torch.rand(batch, people, objects, CODE, generator=random) * 4,
+        "codes": torch.rand(batch, people, objects, WIDTH, generator=random) * 4,
         "there": torch.ones(batch, objects, dtype=torch.bool),
     }
 
@@ -282,7 +283,7 @@ def windows(config: SASTConfig, people: int = 2, seen: int = 1, batch: int = 2) 
     return {
         "positions": torch.randn(batch, config.frames, people, 15, 3, generator=random),
         "observed": torch.ones(batch, config.frames, people, dtype=torch.bool),
-        "codes": torch.rand(batch, seen, 3, CODE, generator=random),
+        "codes": torch.rand(batch, seen, 3, WIDTH, generator=random),
         "there": torch.ones(batch, 3, dtype=torch.bool),
         "step": torch.randint(1000, (batch, seen), generator=random),
         "noise": torch.randn(batch, seen, noisy, 15, 3, generator=random),

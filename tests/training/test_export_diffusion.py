@@ -10,8 +10,9 @@ import pytest
 torch = pytest.importorskip("torch")
 onnxruntime = pytest.importorskip("onnxruntime")
 
+from motioncast.core.basis_points import WIDTH  # noqa: E402
 from motioncast.core.card import ModelCard  # noqa: E402
-from motioncast.models.sast import CODE, SAST, SASTConfig  # noqa: E402
+from motioncast.models.sast import SAST, SASTConfig  # noqa: E402
 from motioncast.training.export_diffusion import export_diffusion  # noqa: E402
 
 pytestmark = pytest.mark.torch
@@ -48,7 +49,7 @@ def test_graphs_and_torch_agree(model: SAST, folder: Path, people: int, objects:
     def normal(*size: int) -> np.ndarray:
         return random.normal(size=size).astype(np.float32)
 
-    codes, there = np.abs(normal(people, objects, CODE)) * 3, np.arange(objects) > 0
+    codes, there = np.abs(normal(people, objects, WIDTH)) * 3, np.arange(objects) > 0
     given = {
         "history": normal(CONFIG.history, people, 15, 3),
         "observed": random.random((CONFIG.history, people)) < 0.9,

@@ -34,6 +34,7 @@ from typing import Literal
 import torch
 from torch import Tensor, nn
 
+from motioncast.core.basis_points import POINTS, WIDTH
 from motioncast.core.schedule import cosine_abar
 from motioncast.core.skeletons import SKELETONS
 from motioncast.nn.attention import EncoderLayer
@@ -47,10 +48,6 @@ from motioncast.nn.scaling import Displacement, MinMax, apart_from_root
 from motioncast.nn.sinusoids import sinusoids
 from motioncast.nn.unet import ConvStyle, Decoder, Encoder
 
-CODE = 2061
-"""Numbers that tell an object: distances to 2,048 basis points, then one of 13 types."""
-
-POINTS = 2048
 HEAD = 32
 """Channels of an attention head."""
 
@@ -184,7 +181,7 @@ class SceneTransformer(nn.Module):
         super().__init__()
         self.config = config
         width = config.scene_width
-        self.objects = nn.Linear(CODE, width)
+        self.objects = nn.Linear(WIDTH, width)
         self.encoder = encoder_layers(config, width, config.scene_layers)
         self.norm = nn.LayerNorm(width)
         self.reader = Reader(config, width, config.scene_layers)

@@ -15,8 +15,9 @@ import onnx
 import torch
 from torch import Tensor, nn
 
+from motioncast.core.basis_points import WIDTH
 from motioncast.core.card import ModelCard
-from motioncast.models.sast import CODE, SAST
+from motioncast.models.sast import SAST
 from motioncast.training.export import halved
 
 SCENE = {
@@ -96,7 +97,7 @@ def export_diffusion(model: SAST, card: ModelCard, folder: Path) -> ModelCard:
         there,
     )
     scene_path, path = folder / f"{card.name}.scene.onnx", folder / f"{card.name}.onnx"
-    _write(_Scene(model), (torch.rand(people, things, CODE), there), scene_path, SCENE)
+    _write(_Scene(model), (torch.rand(people, things, WIDTH), there), scene_path, SCENE)
     _write(_Step(model), step, path, STEP)
     done = replace(
         card,

@@ -44,7 +44,8 @@ class Recipe:
         folds: If above 0, the run serves error radii: train and validation takes are split into so many parts by
             actor (the couple by take), and one part is left out.
         fold: The part that is left out.
-        task: What it learns from: ``windows`` of takes, or composed ``rooms``.
+        task: What it learns from: ``windows`` of takes, composed ``rooms`` with their furniture, or ``room-windows``,
+            the people of such rooms alone.
         rooms: Number of rooms that are built for it.
         card: What the model's card says of source, limits and exceptions.
         seed: Seed of everything.

@@ -13,6 +13,7 @@ from torch import Tensor
 
 from motioncast.core.basis_points import WIDTH, codes, hip_frame
 from motioncast.core.scene_object import SceneObject
+from motioncast.core.skeleton import Skeleton
 from motioncast.core.skeletons import SKELETONS
 from motioncast.datasets.rooms import Room, rooms
 from motioncast.training.ahead import ahead
@@ -65,17 +66,12 @@ class RoomsTask:
         self.recipe, self.config = recipe, model.config
         self.skeleton = SKELETONS[self.config.skeleton]
         self.mirror = list(self.skeleton.mirror())
-        self.train = [self.kept(room) for room in rooms(data, "train", recipe.rooms, recipe.seed)]
-        held_out = [self.kept(room) for room in rooms(data, "validation", VALIDATION_ROOMS, VALIDATION_SEED)]
+        self.train = keep(data, "train", recipe.rooms, recipe.seed, self.skeleton)
+        held_out = keep(data, "validation", VALIDATION_ROOMS, VALIDATION_SEED, self.skeleton)
         random = np.random.default_rng(VALIDATION_SEED)
         # the same windows, steps and noise at every look
         self.checks = [self.batch(held_out, recipe.batch, random, mirror=0.0) for _ in range(VALIDATION_BATCHES)]
         model.fit_statistics(torch.from_numpy(self.whole_windows(np.random.default_rng(recipe.seed))))
-
-    def kept(self, room: Room) -> Kept:
-        """What is kept of a room."""
-        scene = room.scene.on(self.skeleton)
-        return scene.positions, room.here, scene.objects
 
     def batches(self, random: np.random.Generator) -> Iterator[RoomBatch]:
         """Batches without end, the next ones prepared beside the training."""
@@ -113,23 +109,7 @@ class RoomsTask:
 
     def window(self, built: list[Kept], random: np.random.Generator, mirror: float) -> Kept:
         """A window of a room, of those who are there at now."""
-        config = self.config
-        while True:
-            positions, present, objects = built[random.integers(len(built))]
-            start = random.integers(0, len(positions) - config.frames + 1)
-            frames = slice(start, start + config.frames)
-            here = np.flatnonzero(present[start + config.history - 1])
-            if not len(here):
-                continue
-            whole, mask = positions[frames][:, here], present[frames][:, here]
-            root = whole[:, :, 0, :2]
-            moved = np.linalg.norm(root - root[config.history - 1], axis=-1)[mask].max()
-            if moved < STILL_M and random.random() < 0.5:
-                continue
-            if random.random() < mirror:
-                whole = whole[:, :, self.mirror] * np.array([-1, 1, 1], np.float32)
-                objects = tuple(mirrored(thing) for thing in objects)
-            return whole, mask, objects
+        return draw(built, self.config.history, self.config.frames, self.mirror, mirror, random)
 
     def whole_windows(self, random: np.random.Generator, count: int = 1000) -> np.ndarray:
         """Windows of people who are there from the first frame to the last, ``(n, N, joints, 3)``."""
@@ -157,6 +137,46 @@ class RoomsTask:
                     loss = model.loss(*(torch.from_numpy(array).to(device) for array in arrays(shifted)))
                 found[name].append(float(loss))
         return {name: float(np.mean(values)) for name, values in found.items()}
+
+
+def keep(data: Path, split: str, count: int, seed: int, skeleton: Skeleton) -> list[Kept]:
+    """What is kept of so many rooms of a split."""
+    return [_kept(room, skeleton) for room in rooms(data, split, count, seed)]
+
+
+def _kept(room: Room, skeleton: Skeleton) -> Kept:
+    scene = room.scene.on(skeleton)
+    return scene.positions, room.here, scene.objects
+
+
+def draw(
+    built: list[Kept], history: int, length: int, swapped: list[int], mirror: float, random: np.random.Generator
+) -> Kept:
+    """A window of a room, of those who are there at now.
+
+    Args:
+        built: The rooms.
+        history: Frames up to now.
+        length: Frames of the window.
+        swapped: Joints in the order that a mirror shows them in.
+        mirror: Share of windows that are mirrored.
+        random: Source of chance.
+    """
+    while True:
+        positions, present, objects = built[random.integers(len(built))]
+        start = random.integers(0, len(positions) - length + 1)
+        here = np.flatnonzero(present[start + history - 1])
+        if not len(here):
+            continue
+        whole, mask = positions[start : start + length][:, here], present[start : start + length][:, here]
+        root = whole[:, :, 0, :2]
+        moved = np.linalg.norm(root - root[history - 1], axis=-1)[mask].max()
+        if moved < STILL_M and random.random() < 0.5:
+            continue
+        if random.random() < mirror:
+            whole = whole[:, :, swapped] * np.array([-1, 1, 1], np.float32)
+            objects = tuple(mirrored(thing) for thing in objects)
+        return whole, mask, objects
 
 
 def arrays(batch: RoomBatch) -> tuple[np.ndarray, ...]:

@@ -49,7 +49,7 @@ def ship(run: Path, folder: Path | None = None, radius: Mapping[str, Any] | None
     model = build(recipe.model, recipe.sizes)
     load_weights(model, run / "best.pt")
     config = model.config
-    in_rooms = recipe.task == "rooms"
+    denoises = recipe.task == "rooms"
     lines = (run / "metrics.jsonl").read_text(encoding="utf-8").splitlines()
     best = min(map(json.loads, lines), key=lambda entry: entry["score"])
     card = ModelCard(
@@ -59,10 +59,10 @@ def ship(run: Path, folder: Path | None = None, radius: Mapping[str, Any] | None
         history=config.history,
         horizon=config.horizon,
         fps=config.fps,
-        data=ROOMS if in_rooms else DATA,
+        data=DATA if recipe.task == "windows" else ROOMS,
         licence=LICENCE,
         figures={
-            "validation_loss" if in_rooms else "validation_ratio_to_zero_velocity": {
+            "validation_loss" if denoises else "validation_ratio_to_zero_velocity": {
                 name: round(value, 4) for name, value in best["validation"].items()
             },
             "chosen_at_step": best["step"],
@@ -77,7 +77,7 @@ def ship(run: Path, folder: Path | None = None, radius: Mapping[str, Any] | None
         },
         **{"system": recipe.model, **recipe.card},
     )
-    if in_rooms:
+    if denoises:
         return export_diffusion(model, replace(card, stochastic=True, diffusion=SAMPLING), folder or run)
     return export(model, card, folder or run)
 

@@ -56,5 +56,5 @@ def test_a_model_of_one_person_gets_one():
     batch = next(learning.batches(np.random.default_rng(0)))
     assert batch.positions.shape[2] == 1
     assert batch.observed[:, 24].all()
-    assert float(learning.loss(model, batch, torch.from_numpy)) > 0
+    assert learning.loss(model, batch, torch.from_numpy).item() > 0
     assert set(learning.scores(model)) == {"rooms"}

@@ -1,21 +1,26 @@
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from motioncast.benchmarks.protocols import BENCHMARKS
 from motioncast.benchmarks.result import load_result, save_result
 from motioncast.benchmarks.rooms import run
 from motioncast.benchmarks.rooms.run import forecast_rooms, real_words, result_of, score
 from motioncast.benchmarks.rooms.scoring import figures_of
 from motioncast.benchmarks.rooms.tally import Mean, Pooled, Ratio, Tally, rows
 from motioncast.benchmarks.rooms.windows import PROTOCOL, RoomWindow, checksum, digest, manifest, windows_of_room
-from motioncast.benchmarks.run import evaluate
+from motioncast.benchmarks.run import evaluate, forecast_windows
 from motioncast.benchmarks.spread import over_processes
+from motioncast.core.card import ModelCard
+from motioncast.core.forecast import Forecast
+from motioncast.core.scene import Scene
 from motioncast.core.scene_object import SceneObject
 from motioncast.datasets.rooms import Event, Room
+from motioncast.datasets.windows import cut
 from motioncast.errors import InputError
 from motioncast.inference.baselines import SimpleGuess
 from motioncast.testing import walkers
@@ -82,6 +87,25 @@ def test_what_comes_after_now_reaches_no_model(windows: list[RoomWindow]) -> Non
     guess = SimpleGuess("root-velocity-damped")
     np.testing.assert_array_equal(forecast_rooms(guess, [other])[0], forecast_rooms(guess, windows[:1])[0])
     assert checksum([other]) != checksum(windows[:1])
+
+
+@dataclass(frozen=True)
+class Short:
+    """A model that answers with one frame, whatever is asked."""
+
+    card: ModelCard = SimpleGuess("zero-velocity").card
+
+    def forecast(self, scene: Scene, **asked: object) -> Forecast:
+        answer = SimpleGuess("zero-velocity").forecast(scene)
+        return replace(answer, samples=answer.samples[:, :1])
+
+
+def test_an_answer_of_another_shape_than_the_truth_is_refused(windows: list[RoomWindow]) -> None:
+    with pytest.raises(InputError, match="1 frames of 2 people; 250 of 2 were asked for"):
+        forecast_rooms(Short(), windows)
+    scene = walkers(people=2, frames=60)
+    with pytest.raises(InputError, match="1 frames of 2 people; 45 of 2 were asked for"):
+        forecast_windows(Short(), BENCHMARKS["cmu-duet"][0], cut([scene], 15, 45))
 
 
 def test_the_truth_is_what_it_is_measured_against(windows: list[RoomWindow]) -> None:

@@ -132,6 +132,19 @@ def test_the_release_does_not_compute_more_than_published(people: int, objects: 
     assert 0.8 * most < round(products.operations / 1e9, 1) <= most
 
 
+def test_people_of_a_frame_cost_less_than_all_frames_behind_a_mask() -> None:
+    """7.3 of the 12.5 GFLOP of 16 people's encoder are left: what is not seen in another frame is not computed."""
+    people, features = SAST(PRESETS["release"]).people.eval(), torch.zeros(16, 38, 15, 128)
+    hidden = torch.zeros(16, 15, dtype=torch.bool)
+    spent = []
+    for encoder in (people.encoder, torch.nn.ModuleList()):
+        people.encoder = encoder
+        with Products() as products, torch.no_grad():
+            people(torch.zeros(16, 38, 512), features, hidden)
+        spent.append(products.operations)
+    assert round((spent[0] - spent[1]) / 1e9, 1) == 7.3
+
+
 @pytest.mark.parametrize("config", [OURS, RELEASE, replace(RELEASE, preset="paper")], ids=lambda config: config.preset)
 def test_moved_and_turned_worlds_have_moved_and_turned_answers(config: SASTConfig) -> None:
     model, given = model_of(config), inputs(config)

@@ -27,6 +27,12 @@ def test_in_its_own_frame_a_person_has_its_hips_at_the_origin(skeleton) -> None:
     torch.testing.assert_close(to_world(own, *frame), motion, atol=2e-6, rtol=0)
 
 
+def test_there_and_back_loses_less_than_a_micrometre() -> None:
+    motion = torch.randn(2, 7, 3, 29, 3, dtype=torch.float64) * 5
+    frame = stand_on_hips(motion[:, 4], HIK29)
+    assert (to_world(to_own(motion, *frame), *frame) - motion).abs().max() < 1e-6
+
+
 def test_hips_one_above_the_other_face_along_y() -> None:
     origin, across = stand_on_hips(torch.zeros(1, 15, 3), MRT15)
     assert origin.tolist() == [[0, 0, 0]]

@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from motioncast.datasets.windows import Windows
+from motioncast.errors import InputError
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,3 +83,17 @@ def checksum(windows: Windows) -> str:
 def tenths_mm(positions: np.ndarray) -> bytes:
     """Positions rounded to 0.1 mm, as bytes."""
     return np.round(positions * 1e4).astype("<i4").tobytes()
+
+
+def as_asked(futures: np.ndarray, frames: int, people: int) -> np.ndarray:
+    """A model's futures ``(..., time, people, joints, 3)``, if they are of the frames and people that were asked for.
+
+    Raises:
+        InputError: If not; a single frame or person would pass for all of them unnoticed.
+    """
+    if futures.shape[-4:-2] != (frames, people):
+        raise InputError(
+            f"the model answered with {futures.shape[-4]} frames of {futures.shape[-3]} people; {frames} of {people} "
+            "were asked for, so correct its forecast"
+        )
+    return futures

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from motioncast.benchmarks.protocol import Protocol, checksum
+from motioncast.benchmarks.protocol import Protocol, as_asked, checksum
 from motioncast.benchmarks.protocols import windows_of
 from motioncast.benchmarks.result import Result, commit
 from motioncast.benchmarks.rooms.run import evaluate_rooms
@@ -99,4 +99,4 @@ def forecast_windows(
     positions, observed = windows.past
     scenes = [Scene(positions[index], skeleton, protocol.fps, observed[index]) for index in range(len(windows))]
     answers = spread(model, scenes, horizon_s, alone, progress or (lambda share: None))
-    return np.stack(answers)
+    return np.stack([as_asked(answer, protocol.horizon, positions.shape[2]) for answer in answers])

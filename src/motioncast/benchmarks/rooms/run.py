@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from motioncast.benchmarks.protocol import as_asked
 from motioncast.benchmarks.result import Result, Row, commit
 from motioncast.benchmarks.rooms.scoring import HIPS, Samples, figures_of, over_standing_still
 from motioncast.benchmarks.rooms.tally import rows
@@ -77,7 +78,7 @@ def forecast_rooms(
             ).samples
             for group in groups
         ]
-        answers.append(np.concatenate(futures, 2))
+        answers.append(as_asked(np.concatenate(futures, 2), PROTOCOL.horizon, len(scene.people)))
         if progress is not None:
             progress((number + 1) / len(windows))
     return answers

@@ -20,7 +20,7 @@ from motioncast.testing import Check, checks, walkers
 
 CARD = ModelCard(
     "toy", "SAST", "forecast", "mrt15", history=25, horizon=30, fps=25.0, stochastic=True, parameters=1,
-    diffusion={"steps": 1000, "sampler": "dpm-solver++", "sampling_steps": 4},
+    diffusion={"steps": 1000, "shift": 0.0, "sampler": "dpm-solver++", "sampling_steps": 4},
 )  # fmt: skip
 
 TABLE = SceneObject("table 1", "table", "box", (1.6, 0.8, 0.7), (2.0, 1.0, 0.35))

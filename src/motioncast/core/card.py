@@ -30,8 +30,8 @@ class ModelCard:
         people: Most people that it takes.
         parameters: Number of trained parameters.
         stochastic: Whether several samples differ.
-        diffusion: Of a model that denoises: ``steps`` of its cosine schedule, and the ``sampler`` and number of
-            ``sampling_steps`` that answer by default; empty of all others.
+        diffusion: Of a model that denoises: ``steps`` and ``shift`` of its cosine schedule, and the ``sampler`` and
+            number of ``sampling_steps`` that answer by default; empty of all others.
         source: Paper and equations.
         data: What it was trained on.
         licence: Licence of code, data and weights.

@@ -149,7 +149,8 @@ class DiffusionForecaster(ShippedForecaster):
     @property
     def schedule(self) -> Schedule:
         """The schedule of the training."""
-        return Schedule.cosine(self.card.diffusion["steps"])
+        stated = self.card.diffusion
+        return Schedule.cosine(stated["steps"], stated["shift"])
 
 
 def eased(history: np.ndarray, future: np.ndarray) -> np.ndarray:

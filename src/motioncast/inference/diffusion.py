@@ -67,9 +67,9 @@ class Schedule:
     abar: np.ndarray
 
     @classmethod
-    def cosine(cls, steps: int = 1000) -> Schedule:
-        """The cosine schedule."""
-        return cls(cosine_abar(steps))
+    def cosine(cls, steps: int = 1000, shift: float = 0.0) -> Schedule:
+        """The cosine schedule (:func:`motioncast.core.schedule.cosine_abar`)."""
+        return cls(cosine_abar(steps, shift))
 
     @property
     def log_snr(self) -> np.ndarray:

@@ -22,6 +22,7 @@ from onnx import helper, numpy_helper
 from motioncast.core.card import ModelCard
 from motioncast.models.sast import PRESETS, SAST
 from motioncast.training.export_diffusion import export_diffusion
+from motioncast.training.ship import SAMPLING
 
 PHASE = 2.399963
 """Radians from one weight to the next: the golden angle, which never comes round."""
@@ -73,7 +74,7 @@ def sast_at_paper_size(folder: Path) -> ModelCard:
     config = PRESETS["motioncast"]
     card = ModelCard(
         "sast", "SAST", "forecast", config.skeleton, config.history, config.horizon, config.fps, stochastic=True,
-        diffusion={"steps": config.steps, "sampler": "dpm-solver++", "sampling_steps": 20},
+        diffusion={"steps": config.steps, "shift": config.shift, **SAMPLING},
         data="none: the weights are made up, to measure time", licence="Apache-2.0",
     )  # fmt: skip
     card = export_diffusion(SAST(config), card, folder)

@@ -33,8 +33,8 @@ ROOMS = (
 )
 LICENCE = "Apache-2.0; trained on CMU's data, which is free for research and products but not to be resold"
 
-SAMPLING = {"steps": 1000, "sampler": "dpm-solver++", "sampling_steps": 20}
-"""The schedule of a diffusion's training, and how it is sampled where nobody asks otherwise."""
+SAMPLING = {"sampler": "dpm-solver++", "sampling_steps": 20}
+"""How a diffusion is sampled where nobody asks otherwise."""
 
 
 def ship(run: Path, folder: Path | None = None, radius: Mapping[str, Any] | None = None) -> ModelCard:
@@ -78,7 +78,8 @@ def ship(run: Path, folder: Path | None = None, radius: Mapping[str, Any] | None
         **{"system": recipe.model, **recipe.card},
     )
     if denoises:
-        return export_diffusion(model, replace(card, stochastic=True, diffusion=SAMPLING), folder or run)
+        diffusion = {"steps": config.steps, "shift": config.shift, **SAMPLING}
+        return export_diffusion(model, replace(card, stochastic=True, diffusion=diffusion), folder or run)
     return export(model, card, folder or run)
 
 

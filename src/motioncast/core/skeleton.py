@@ -130,6 +130,8 @@ STAND_INS: dict[str, tuple[tuple[str, ...], ...]] = {
     "head": (
         ("upper_neck", "head_top"), ("left_ear", "right_ear"), ("nose",), ("head_top",), ("upper_neck",),
     ),
+    "head_top": (("head",),),
+    "nose": (("upper_neck",), ("neck", "head")),
     "upper_neck": (("neck", "head"), ("head",)),
     "left_wrist": (("left_hand",),),
     "right_wrist": (("right_hand",),),

@@ -6,8 +6,8 @@ import pytest
 
 pytest.importorskip("torch")
 
-from motioncast.training.loop import pace  # noqa: E402
-from motioncast.training.recipe import Recipe, read_recipe  # noqa: E402
+from motioncast.training.loop import pace
+from motioncast.training.recipe import Recipe, read_recipe
 
 pytestmark = pytest.mark.torch
 

@@ -1,6 +1,6 @@
 """Characteristic poses of CMU's takes: what came before each, and the pose itself.
 
-The moments stand in ``data/cmu_goals.tsv``: found by the rule of ``moments``, corrected by eye where its source says so.
+The moments stand in ``data/cmu_goals.tsv``: found by the rule of ``moments``, then corrected by eye (column source).
 Splits are those of ``cmu``. The 17 joints are Human3.6M's; CMU's body has the base of the skull in the place of the
 nose and the middle of the head in that of its top.
 """

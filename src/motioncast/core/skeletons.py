@@ -328,8 +328,23 @@ OPENPOSE25 = recognise(
 )  # fmt: skip
 """OpenPose's BODY_25; the pelvis comes first here, since a parent comes before its children."""
 
+UPPER9 = Skeleton(
+    names=(
+        "head", "neck", "right_shoulder", "right_elbow", "right_wrist", "left_shoulder", "left_elbow", "left_wrist",
+        "pelvis",
+    ),
+    parents=(-1, 0, 1, 2, 3, 1, 5, 6, 1),
+    landmarks=(
+        "head", "neck", "right_shoulder", "right_elbow", "right_wrist", "left_shoulder", "left_elbow", "left_wrist",
+        "pelvis",
+    ),
+    label="upper9",
+)  # fmt: skip
+"""The upper body of FutureHuman3D, in its order (Table 4.13); the head is the root, since a parent comes first."""
+
 SKELETONS: dict[str, Skeleton] = {
-    skeleton.label: skeleton for skeleton in (MRT15, SOMOF13, SMPL22, SMPL24, HIK29, COCO17, CMU31, H36M17, OPENPOSE25)
+    skeleton.label: skeleton
+    for skeleton in (MRT15, SOMOF13, SMPL22, SMPL24, HIK29, COCO17, CMU31, H36M17, OPENPOSE25, UPPER9)
 }
 """Known skeletons by name."""
 

@@ -69,6 +69,13 @@ def test_the_table_of_the_package_holds_every_split_and_keeps_moments_apart() ->
         assert one.person != other.person or other.second - one.second > 0.4
 
 
+def test_a_rejected_moment_is_no_pose_and_what_the_eye_saw_is() -> None:
+    moments = read_moments(table())
+    counts = {source: sum(moment.source == source for moment in moments) for source in ("rejected", "manual")}
+    assert counts == {"rejected": 14, "manual": 11}
+    assert all(moment.note for moment in moments if moment.source in counts)
+
+
 @pytest.mark.parametrize(("joint", "place"), [("Nose", "upperneck"), ("Head", "head"), ("RWrist", "rwrist")])
 def test_cmu_bodies_have_all_17_joints(joint: str, place: str) -> None:
     assert H36M17.map_from(CMU31)[H36M17.index(joint)] == (CMU31.index(place),)

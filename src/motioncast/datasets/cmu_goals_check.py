@@ -20,7 +20,7 @@ def read(place: Path) -> Iterator[Scene]:
 
 DATASET = DataSet(
     "cmu-goals",
-    "1,548 characteristic moments of CMU's takes, in a table of the package; the takes are those of cmu",
+    "1,545 characteristic moments of CMU's takes, in a table of the package; the takes are those of cmu",
     "the moments: Apache-2.0; the takes: as cmu",
     "as cmu",
     "mocap.cs.cmu.edu, .asf and .amc by subject",

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from motioncast.core.limbs import middle_joint
 from motioncast.core.shapes import signed_distance
 from motioncast.core.skeletons import CMU31, MRT15
 from motioncast.datasets.rooms import windows
@@ -20,7 +21,7 @@ from motioncast.datasets.rooms.footprint import footprint
 from motioncast.datasets.rooms.furnish import decoys, walls
 from motioncast.datasets.rooms.gait import walking
 from motioncast.datasets.rooms.ground import Ground
-from motioncast.datasets.rooms.limbs import hermite, middle_joint
+from motioncast.datasets.rooms.keys import hermite
 from motioncast.datasets.rooms.people import Cast, cast
 from motioncast.datasets.rooms.splits import split_of
 from motioncast.formats.load import load_scene

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from motioncast.core.limbs import middle_joint
 from motioncast.core.rotation import between, rotate
 from motioncast.core.skeletons import CMU31
 from motioncast.datasets.rooms.bodies import PELVIS, turned
 from motioncast.datasets.rooms.contacts import speed
 from motioncast.datasets.rooms.gait import Gait
-from motioncast.datasets.rooms.limbs import middle_joint
 
 HIPS, KNEES, ANKLES, BALLS, TIPS = (
     tuple(CMU31.index(side + name) for side in "lr") for name in ("hipjoint", "femur", "tibia", "foot", "toes")

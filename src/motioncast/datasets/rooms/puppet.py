@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from motioncast.core.limbs import REACH, middle_joint
 from motioncast.core.skeletons import CMU31
 from motioncast.datasets.rooms.bodies import PELVIS, facing, turned
 from motioncast.datasets.rooms.contacts import FPS, smoothed
@@ -27,7 +28,7 @@ from motioncast.datasets.rooms.figure import (
     pitched,
     toe_out,
 )
-from motioncast.datasets.rooms.limbs import REACH, hermite, middle_joint
+from motioncast.datasets.rooms.keys import hermite
 
 SOLE_M = 0.005
 """No joint of a foot comes lower."""

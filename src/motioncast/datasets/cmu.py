@@ -57,6 +57,7 @@ class Take:
         fps: Frames a second.
         split: ``train``, ``validation`` or ``test``.
         place: Archive, npz file or AMC file that holds it.
+        description: What is done, where an index says so.
     """
 
     name: str
@@ -65,6 +66,7 @@ class Take:
     fps: float
     split: str
     place: Path
+    description: str = ""
 
 
 def split_of(subject: int, number: int) -> str:
@@ -106,10 +108,10 @@ def takes(folder: str | Path, split: str | None = None) -> list[Take]:
     return [take for take in ordered if split is None or take.split == split]
 
 
-def _take(name: str, place: Path) -> Take:
+def _take(name: str, place: Path, description: str = "") -> Take:
     subject, number = (int(part) for part in name.split("_"))
     fps = 60.0 if subject in SLOW_SUBJECTS else 120.0
-    return Take(name, subject, number, fps, split_of(subject, number), place)
+    return Take(name, subject, number, fps, split_of(subject, number), place, description)
 
 
 def _rows(place: Path) -> list[dict[str, str]]:
@@ -120,13 +122,13 @@ def _rows(place: Path) -> list[dict[str, str]]:
 def _packed(place: Path) -> Iterator[Take]:
     for row in _rows(place):
         if row.get("archive", "").endswith(".tar.xz"):
-            yield _take(row["name"], place / row["archive"])
+            yield _take(row["name"], place / row["archive"], row.get("description", ""))
 
 
 def _positions_only(place: Path) -> Iterator[Take]:
     for row in _rows(place):
         if row.get("archive", "").startswith("extra_cmu_"):
-            yield _take(row["id"], place / row["archive"])
+            yield _take(row["id"], place / row["archive"], row.get("description", ""))
 
 
 def _tree(folder: Path) -> Iterator[Take]:

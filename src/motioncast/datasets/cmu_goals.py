@@ -30,6 +30,20 @@ SHORTEST_SPAN = 14
 STARTS = (0.0, 1 / 3, 1 / 2, 2 / 3, 1.0)
 """The five starting points, as shares of the way from the first possible history to the last."""
 
+KINDS: dict[str, tuple[str, ...]] = {
+    "climb": ("playground",),
+    "couple": ("salsa",),
+    "dance": ("dance", "dancing", "lambada"),
+    "fight": ("boxing", "punch", "sword", "martial"),
+    "signal": ("signals", "direct traffic", "wash windows", "high-five"),
+    "ball": ("basketball", "soccer"),
+    "exercise": ("jumping jacks", "cartwheel", "balance", "acrobatics", "bend over", "wash self"),
+    "jump": ("jump", "hop"),
+    "run": ("run",),
+    "walk": ("walk", "navigate"),
+}
+"""Coarse kinds of takes, and the words of CMU's descriptions that tell them; the first that fits counts."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GoalSample:
@@ -75,6 +89,22 @@ def goal_samples(data: str | Path, split: str, moments: str | Path | None = None
             found.setdefault(moment.person, []).append(moment)
     for scene in goal_scenes(data, split):
         yield from samples_of(scene, found)
+
+
+def kinds(data: str | Path) -> dict[str, str]:
+    """The coarse kind of each take that an index describes; a take holds more than its kind says."""
+    return {take.name: kind for take in cmu.takes(data) if (kind := kind_of(take.description))}
+
+
+def kind_of(description: str) -> str:
+    """The first of ``KINDS`` of which a word is in a description; empty if there is none.
+
+    Example:
+        >>> kind_of("soccer - kick ball"), kind_of("dance - lean forward"), kind_of("Walk digital figure eight")
+        ('ball', 'dance', 'walk')
+    """
+    told = description.lower()
+    return next((kind for kind, words in KINDS.items() if any(word in told for word in words)), "")
 
 
 def goal_scenes(data: str | Path, split: str) -> Iterator[Scene]:

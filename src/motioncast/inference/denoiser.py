@@ -20,6 +20,7 @@ from motioncast.core.forecaster import Progress
 from motioncast.core.scene import Scene
 from motioncast.errors import InputError
 from motioncast.inference.diffusion import SAMPLERS, Noise, Schedule, noise_of
+from motioncast.inference.guidance import kept_clear
 from motioncast.inference.question import Question
 from motioncast.inference.shipped import ShippedForecaster
 
@@ -49,10 +50,12 @@ class DiffusionForecaster(ShippedForecaster):
     Attributes:
         sampler: Name of the sampler (``SAMPLERS``). Default: the card's.
         steps: Passes of the denoiser for a sample. Default: the card's.
+        guided: Whether futures are kept out of things and of strangers.
     """
 
     sampler: str = ""
     steps: int = 0
+    guided: bool = True
 
     def __post_init__(self) -> None:
         stated = self.card.diffusion
@@ -83,6 +86,7 @@ class DiffusionForecaster(ShippedForecaster):
         people = [question.asked.people[person] for person in known]
         shape = (self.card.horizon, len(self.card.joints), 3)
         seen_now = self.seen(scene, question.positions[-1, known])
+        things, floor_m = [thing.at(-1) for thing in scene.objects], seen_now.floor_m
         done, total = count(1), samples * question.passes * self.steps
 
         def tick() -> None:
@@ -94,7 +98,10 @@ class DiffusionForecaster(ShippedForecaster):
                 rolled_on = history is not question.positions
                 seen = self.seen(scene, history[-1, known]) if rolled_on else seen_now
                 there = np.any(observed[:, known], -1)
-                answer[:, known] = self.sampled(history[:, known], there, seen, noise, tick)
+                future = self.sampled(history[:, known], there, seen, noise, tick)
+                if self.guided:
+                    future = kept_clear(history[:, known], future, things, self.card.joints, self.card.fps, floor_m)
+                answer[:, known] = future
                 return answer
 
             return question.rolled(one_pass)

@@ -123,8 +123,9 @@ def cut_steps(sequences: Iterable[ActionSequence], history: int, steps: int, str
     owners = [sequence for sequence, _ in found]
     pixels = np.stack([sequence.pixels[steps] for sequence, steps in found])
     actions = np.stack([sequence.actions[steps] for sequence, steps in found])
-    known = all(sequence.positions is not None for sequence in owners)
-    truth = [sequence.camera.seen(sequence.positions[steps]) for sequence, steps in found] if known else []
+    truth = [
+        sequence.camera.seen(sequence.positions[steps]) for sequence, steps in found if sequence.positions is not None
+    ]
     return _windows([sequence.name for sequence in owners], pixels, actions, owners, history, truth)
 
 
@@ -137,8 +138,8 @@ def _windows(
     truth: Iterable[np.ndarray] = (),
 ) -> ActionWindows:
     """Windows of pixels ``(windows, steps, people, 9, 2)``, NaN where not seen."""
-    seen = np.isfinite(pixels).all(-1)
-    seen &= seen[..., NECK : NECK + 1]
+    finite = np.isfinite(pixels).all(-1)
+    seen = finite & finite[..., NECK : NECK + 1]
     cameras = [owner.camera for owner in owners]
     depth = [depth_m(past, camera.focal_px) for past, camera in zip(pixels[:, :history], cameras, strict=True)]
     exact = np.array([from_neck(poses) for poses in truth], np.float32)

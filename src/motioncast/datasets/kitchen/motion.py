@@ -30,7 +30,8 @@ RIGHT_HAND = {
 }  # fmt: skip
 LEFT_HAND = {
     "wash": (0, 0.05, 0), "peel": (-0.05, 0.07, 0.09), "cut": (0, 0.10, 0.03), "open": (-0.06, 0.05, 0.08),
-    "spread": (-0.02, 0.10, 0.03), "crack": (-0.02, 0.06, 0.12), "serve": (0.04, 0.10, 0.04), "put": (-0.04, 0.14, 0.02),
+    "spread": (-0.02, 0.10, 0.03), "crack": (-0.02, 0.06, 0.12), "serve": (0.04, 0.10, 0.04),
+    "put": (-0.04, 0.14, 0.02),
 }  # fmt: skip
 """Where hands are from the place, in the direction that the trunk faces; a left hand that is not named rests."""
 

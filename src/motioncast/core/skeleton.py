@@ -132,6 +132,10 @@ STAND_INS: dict[str, tuple[tuple[str, ...], ...]] = {
     ),
     "head_top": (("head",),),
     "nose": (("upper_neck",), ("neck", "head")),
+    "middle_spine": (
+        ("lower_spine", "upper_spine"), ("pelvis", "neck_base"), ("pelvis", "neck"),
+        ("left_hip", "right_hip", "left_shoulder", "right_shoulder"),
+    ),
     "upper_neck": (("neck", "head"), ("head",)),
     "left_wrist": (("left_hand",),),
     "right_wrist": (("right_hand",),),

@@ -23,13 +23,17 @@ from torch import Tensor, nn
 
 from motioncast.errors import InputError
 from motioncast.models import build
+from motioncast.training.goals_task import GoalsTask
 from motioncast.training.recipe import Recipe, read_run
 from motioncast.training.room_windows_task import RoomWindowsTask
 from motioncast.training.rooms_task import RoomsTask
 from motioncast.training.weights import load_weights
 from motioncast.training.windows_task import WindowsTask
 
-TASKS = {"windows": WindowsTask, "rooms": RoomsTask, "room-windows": RoomWindowsTask}
+TASKS = {
+    "windows": WindowsTask, "rooms": RoomsTask, "room-windows": RoomWindowsTask,
+    "goals": GoalsTask, "goal-offsets": GoalsTask,
+}  # fmt: skip
 """What a recipe's ``task`` names."""
 
 

@@ -89,9 +89,14 @@ PLACES = [
 COMPANY = [
     Column("pairs in one another, %", "pairs_overlapping", 10, 2, 100),
     Column("how deep, mm", "overlap_of_pairs", 10, 2, 1000),
+    Column("W1 to how near pairs truly come, m", "nearest_approach_w1"),
     Column("couples in time", "synchrony_recorded"),
     Column("more than with strangers", "synchrony_recorded_over_strangers"),
     Column("composed neighbours, more than with strangers", "synchrony_composed_over_strangers"),
+    Column("couples set out apart, s", "onset_lag_recorded"),
+    Column("less than with strangers if negative, s", "onset_lag_recorded_over_strangers"),
+    Column("composed neighbours, s", "onset_lag_composed"),
+    Column("less than with strangers if negative, s", "onset_lag_composed_over_strangers"),
 ]
 
 
@@ -307,7 +312,8 @@ The same with people whom inverse kinematics moves: they sit, reach and write as
 ## Does it respect people?
 
 Bodies are capsules of 5 cm. In time: correlation over time of the speeds of two neighbours, of couples who were
-recorded together and of people who were set beside one another, against the same people with people of other rooms.
+recorded together and of people who were set beside one another, against the same people with people of other rooms;
+likewise the seconds between one of them setting out and the other.
 
 {markdown(table, COMPANY)}
 Protocol `{protocol_hash(windows)}`, data `{checksum(windows)[:16]}`; again:

@@ -113,7 +113,7 @@ def test_the_truth_is_what_it_is_measured_against(windows: list[RoomWindow]) -> 
     found = {(figure.metric, figure.frame): figure for figure in figures_of(windows, futures(windows), real)}
     ones = np.ones((1, len(windows)))
     value = {key: figure.mean(ones)[0] for key, figure in found.items()}
-    for metric in ("ade_k1", "fde_k1", "path_length_w1", "apd_of_4"):
+    for metric in ("ade_k1", "fde_k1", "path_length_w1", "nearest_approach_w1", "apd_of_4"):
         assert value[metric, 250] == pytest.approx(0, abs=1e-9), metric
     assert value["mpjpe_at", 100] == pytest.approx(0, abs=1e-9)
     assert value["ndms", 250] > 0.9  # its own words are in the reference
@@ -122,6 +122,26 @@ def test_the_truth_is_what_it_is_measured_against(windows: list[RoomWindow]) -> 
     assert value["sitting_frames", 250] == 0
     assert ("seat_under_sitting", 250) not in value  # nobody sits: not measurable
     assert value["goal_chance", 250] == value["goal_sit_chance", 250] == 0.5
+
+
+def test_couples_that_set_out_together_lag_less_than_strangers(windows: list[RoomWindow]) -> None:
+    """Both stand for 40 frames, or 120 in the next window, and walk then."""
+    together = []
+    for number, window in enumerate(windows):
+        pose = np.repeat(window.scene.positions[-1:], 250, 0)
+        pose[:, 1] = pose[:, 0] + np.float32((1.0, 0.0, 0.0))
+        start = 40 + 80 * (number % 2)
+        walked = np.maximum(np.arange(250) - start, 0).astype(np.float32) / 25
+        near = window.scene.positions.copy()
+        near[-1] = pose[0]
+        kept = replace(window, scene=replace(window.scene, positions=near), seen=np.ones((250, 2), bool))
+        together.append((kept, (pose + walked[:, None, None, None] * np.float32((0.0, 1.0, 0.0)))[None]))
+    some, samples = zip(*together, strict=True)
+    ones = np.ones((1, len(windows)))
+    value = {figure.metric: figure.mean(ones)[0] for figure in figures_of(some, samples)}
+    assert value["onset_lag_recorded"] == 0
+    assert value["onset_lag_recorded_over_strangers"] < -1
+    assert value["nearest_approach"] == pytest.approx(1.0, abs=1e-3)
 
 
 def test_who_has_left_counts_no_more(windows: list[RoomWindow]) -> None:

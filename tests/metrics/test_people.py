@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from motioncast.metrics.people import gaps, minimum_distance, penetration, rod_distance
+from motioncast.metrics.people import gaps, minimum_distance, nearest_approach, penetration, rod_distance
 
 BONES = [(1, 0), (2, 1), (3, 1)]
 
@@ -99,3 +99,19 @@ def test_people_who_walk_through_one_another() -> None:
     assert share == pytest.approx(0.6)
     assert depth == pytest.approx(np.mean([0.06, 0.1, 0.04]))
     assert penetration(gaps(motion, [(1, 0)], radius_m=0.05), tolerance_m=0.05)[0] == pytest.approx(0.4)
+
+
+def test_naive_twin_of_nearest_approaches(motion: np.ndarray) -> None:
+    path, observed = motion[:, :, 0, :2], np.ones((4, 3), bool)
+    observed[1, 2] = observed[3, 0] = False
+    for seen in (None, observed):
+        expected = [
+            min(
+                np.hypot(*(path[t, one] - path[t, other]))
+                for t in range(4) if seen is None or (seen[t, one] and seen[t, other])
+            )
+            for one, other in ((0, 1), (0, 2), (1, 2))
+        ]  # fmt: skip
+        np.testing.assert_allclose(nearest_approach(path, seen), expected)
+    observed[:, 1] = False
+    assert np.isnan(nearest_approach(path, observed)).tolist() == [True, False, True]

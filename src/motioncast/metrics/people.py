@@ -107,6 +107,29 @@ def minimum_distance(gap: np.ndarray) -> np.ndarray:
     return gap.min((-2, -1), initial=np.inf)
 
 
+def nearest_approach(path: np.ndarray, observed: np.ndarray | None = None) -> np.ndarray:
+    """How near each two people come over the ground, ``(pairs,)`` metres.
+
+    Args:
+        path: ``(time, people, 2)`` metres (:func:`motioncast.metrics.paths.root_path`).
+        observed: ``(time, people)``; a pair counts in the frames in which both are seen. Default: all.
+
+    Returns:
+        Pairs in the order (0, 1), (0, 2), ..., (1, 2), ...; NaN of pairs that are never seen together.
+
+    Example:
+        >>> to_and_fro = np.array([[[0.0, 0.0], [3.0, 4.0]], [[0.0, 0.0], [0.6, 0.8]], [[0.0, 0.0], [3.0, 4.0]]])
+        >>> nearest_approach(to_and_fro).round(6)
+        array([1.])
+    """
+    one, other = np.triu_indices(path.shape[1], 1)
+    distance = np.linalg.norm(np.subtract(path[:, one], path[:, other], dtype=np.float64), axis=-1)
+    if observed is not None:
+        distance = np.where(observed[:, one] & observed[:, other], distance, np.inf)
+    nearest = distance.min(0, initial=np.inf)
+    return np.where(np.isfinite(nearest), nearest, np.nan)
+
+
 def penetration(gap: np.ndarray, tolerance_m: float = 0.0) -> tuple[float, float]:
     """How often and how deep people are in one another.
 

@@ -15,8 +15,9 @@ from motioncast.benchmarks.rooms.windows import PROTOCOL, Goal, RoomWindow
 from motioncast.core.skeletons import SKELETONS
 from motioncast.metrics.furniture import Legs, crosses, grounded, joint_depth, nearest_of_kind, seated, sits, stands
 from motioncast.metrics.ndms import Dictionary, similarity
+from motioncast.metrics.onsets import onset_lags, onsets
 from motioncast.metrics.paths import FASTEST_M_S, path_length_m, root_path, wasserstein_1
-from motioncast.metrics.people import gaps
+from motioncast.metrics.people import gaps, nearest_approach
 from motioncast.metrics.physical import foot_skating, seam_jump, velocity_change
 from motioncast.metrics.position import joint_errors
 from motioncast.metrics.samples import ade, apd, fde
@@ -57,12 +58,13 @@ def figures_of(windows: Sequence[RoomWindow], samples: Samples, real: Dictionary
     tally = Tally(len(windows), HORIZON)
     depths: list[np.ndarray] = []
     lengths: list[np.ndarray] = []
+    approaches: list[np.ndarray] = []
     for number, (window, futures) in enumerate(zip(windows, samples, strict=True)):
         body = futures[0]
         errors(tally, number, window, futures)
         lengths.append(ways(tally, number, window, body))
         depths.append(things(tally, number, window, body))
-        company(tally, number, window, body)
+        approaches.append(company(tally, number, window, body))
         goals(tally, number, window, body)
         feet(tally, number, window, body)
         if real is not None:
@@ -74,6 +76,7 @@ def figures_of(windows: Sequence[RoomWindow], samples: Samples, real: Dictionary
         Ratio("seam_over_real", found["seam_jump"][0], found["real_velocity_change"][0]),
         Pooled("path_length_std", HORIZON, "m", lengths, lambda pairs: float(pairs[:, 0].std())),
         Pooled("path_length_w1", HORIZON, "m", lengths, lambda pairs: wasserstein_1(pairs[:, 0], pairs[:, 1])),
+        Pooled("nearest_approach_w1", HORIZON, "m", approaches, lambda pairs: wasserstein_1(pairs[:, 0], pairs[:, 1])),
         Pooled("depth_in_things_p95", HORIZON, "m", depths, lambda deep: float(np.percentile(deep, 95))),
     ]
 
@@ -143,8 +146,8 @@ def things(tally: Tally, number: int, window: RoomWindow, body: np.ndarray) -> n
     return deepest
 
 
-def company(tally: Tally, number: int, window: RoomWindow, body: np.ndarray) -> None:
-    """How often and how deep two people are in one another."""
+def company(tally: Tally, number: int, window: RoomWindow, body: np.ndarray) -> np.ndarray:
+    """How often and how deep two people are in one another; how near they come and truly came, ``(pairs, 2)``."""
     body, seen = body[::EVERY], window.seen[::EVERY]
     roots = root_path(body, HIPS)
     for one in range(body.shape[1]):
@@ -155,6 +158,9 @@ def company(tally: Tally, number: int, window: RoomWindow, body: np.ndarray) -> 
             overlap[near] = np.maximum(-gaps(body[near][:, [one, other]], SKELETON.bones)[:, 0], 0)
             tally.add(number, "pairs_overlapping", overlap[both] > 0, "1")
             tally.add(number, "overlap_of_pairs", overlap[both], "m")
+    nearest, true = (nearest_approach(path, seen) for path in (roots, root_path(window.future[::EVERY], HIPS)))
+    tally.add(number, "nearest_approach", nearest, "m")
+    return np.stack([nearest, true], -1)[~np.isnan(nearest)]
 
 
 def goals(tally: Tally, number: int, window: RoomWindow, body: np.ndarray) -> None:
@@ -206,7 +212,7 @@ def words(tally: Tally, number: int, window: RoomWindow, body: np.ndarray, real:
 
 
 def in_time(tally: Tally, windows: Sequence[RoomWindow], samples: Samples) -> None:
-    """Correlation of the speeds of neighbours, recorded together or composed, and of the same people with strangers."""
+    """Do neighbours, recorded together or composed, go at one pace and set out together, more than with strangers?"""
     speeds, rooms, owners, kinds = [], [], [], []
     for number, (window, futures) in enumerate(zip(windows, samples, strict=True)):
         roots = root_path(np.concatenate([window.scene.positions[-1:], futures[0]]), HIPS)
@@ -223,7 +229,11 @@ def in_time(tally: Tally, windows: Sequence[RoomWindow], samples: Samples) -> No
     if not speeds:
         return
     one, other = np.moveaxis(np.array(speeds), 1, 0)
-    real, shuffled = synchrony(one, other, rooms)
-    for owner, kind, together, strangers in zip(owners, kinds, real, shuffled, strict=True):
-        tally.add(owner, f"synchrony_{kind}", together, "1")
-        tally.add(owner, f"synchrony_{kind}_over_strangers", together - strangers, "1")
+    mine, theirs = ([onsets(pace) for pace in side] for side in (one, other))
+    for name, unit, (real, shuffled) in (
+        ("synchrony", "1", synchrony(one, other, rooms)),
+        ("onset_lag", "s", onset_lags(mine, theirs, rooms, FPS)),
+    ):
+        for owner, kind, together, strangers in zip(owners, kinds, real, shuffled, strict=True):
+            tally.add(owner, f"{name}_{kind}", together, unit)
+            tally.add(owner, f"{name}_{kind}_over_strangers", together - strangers, unit)

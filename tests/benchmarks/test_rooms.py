@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from importlib import resources
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,7 @@ import pytest
 from motioncast.benchmarks.protocols import BENCHMARKS
 from motioncast.benchmarks.result import load_result, save_result
 from motioncast.benchmarks.rooms import run
-from motioncast.benchmarks.rooms.run import forecast_rooms, real_words, result_of, score
+from motioncast.benchmarks.rooms.run import forecast_rooms, real_words, result_of, room_windows, score
 from motioncast.benchmarks.rooms.scoring import figures_of
 from motioncast.benchmarks.rooms.tally import Mean, Pooled, Ratio, Tally, rows
 from motioncast.benchmarks.rooms.windows import PROTOCOL, RoomWindow, checksum, digest, manifest, windows_of_room
@@ -193,6 +194,16 @@ def test_the_manifest_lists_every_window(windows: list[RoomWindow]) -> None:
     lines = manifest(windows).splitlines()
     assert len(lines) == 1 + len(windows)
     assert lines[1].startswith("0,room 0,0,274,25,2,3,1,")
+
+
+@pytest.mark.data
+def test_the_first_rooms_are_those_of_the_manifest(shared: Path) -> None:
+    path = resources.files("motioncast.benchmarks") / "manifests" / "rooms.csv"
+    if not path.is_file():
+        pytest.skip("no manifest of rooms yet; benchmarks/rooms_table.py writes it")
+    found = manifest(room_windows(shared, "test", 2)).splitlines()
+    assert len(found) > 3
+    assert path.read_text(encoding="utf-8").splitlines()[: len(found)] == found
 
 
 def test_evaluated_by_name(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-// Builds src/main.ts and page.css into src/motioncast/view; the same sources give the same bytes.
+// Builds the page of a forecast and that of annotations into src/motioncast/view; the same sources give the same bytes.
 import { readFile, writeFile } from "node:fs/promises";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
@@ -7,9 +7,11 @@ const here = new URL("./", import.meta.url);
 const out = new URL("../src/motioncast/view/", here);
 const licence = await readFile(new URL("node_modules/three/LICENSE", here), "utf8");
 
-for (const [entry, name, banner] of [
-  ["src/main.ts", "page.js", `/* This bundle contains three.js.\n\n${licence.replaceAll("\r\n", "\n").trim()}\n*/`],
-  ["page.css", "page.css", ""],
+const banner = `/* This bundle contains three.js.\n\n${licence.replaceAll("\r\n", "\n").trim()}\n*/`;
+
+for (const [entry, name] of [
+  ["src/main.ts", "page.js"], ["page.css", "page.css"],
+  ["src/annotate/main.ts", "annotate.js"], ["annotate.css", "annotate.css"],
 ]) {
   const result = await build({
     absWorkingDir: fileURLToPath(here),
@@ -26,5 +28,6 @@ for (const [entry, name, banner] of [
   await writeFile(new URL(name, out), result.outputFiles[0].contents);
   console.log(`${name}: ${(result.outputFiles[0].contents.length / 1000).toFixed(0)} kB`);
 }
-const page = await readFile(new URL("page.html", here), "utf8");
-await writeFile(new URL("page.html", out), page);
+for (const name of ["page.html", "annotate.html"]) {
+  await writeFile(new URL(name, out), await readFile(new URL(name, here), "utf8"));
+}

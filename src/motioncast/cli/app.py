@@ -19,6 +19,7 @@ COMMANDS = {
     "forecast": "Forecast the people of a scene file, or of several motion files of one world and clock.",
     "info": "Say what a motion file holds: people, frame rate, joints and what they were recognised as.",
     "view": "Show a forecast as an interactive page.",
+    "annotate": "Mark characteristic moments of motions in the browser, by key.",
     "export": "Write a scene or a forecast as npz, csv, trc, bvh or glb, or a forecast as a page (html).",
     "models": "List the models, trained and simple.",
     "time": "Measure how long a model takes.",

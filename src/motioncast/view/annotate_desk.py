@@ -134,7 +134,7 @@ class Desk:
         return [moment for moment in self.tables[motion.table] if moment.take == motion.name]
 
     def _scene(self, number: int) -> tuple[Scene, int]:
-        """A motion, at once where it was the last one asked for, and how many of its frames one shown frame stands for."""
+        """A motion, kept for when it is asked for again, and how many of its frames a shown one stands for."""
         if self._shown is None or self._shown[0] != number:
             scene = self.motions[number].load()
             self._shown = (number, scene, max(1, int(np.ceil(scene.fps / SHOWN_FPS))))

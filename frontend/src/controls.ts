@@ -76,6 +76,7 @@ export class Controls {
     get("doubts").hidden = about.levels.length === 0;
     get("looks").hidden = about.bones === 0;
     get("inside").hidden = about.objects.length === 0;
+    get("aims").hidden = !about.goals;
     this.futures();
     this.kinds();
     get("levels").textContent = about.levels.map((level) => `${Math.round(Number(level) * 100)} %`).join(" and ");
@@ -186,6 +187,8 @@ export class Controls {
       w: () => this.toggle("stood"),
       o: () => this.toggle("things"),
       i: () => this.toggle("names"),
+      g: () => this.toggle("goals"),
+      h: () => this.toggle("heat"),
       v: () => this.next("future", futuresOf(this.about.weights.length)),
       a: () => this.choose("future", futuresOf(this.about.weights.length).at(-1)!),
       b: () => this.next("look", LOOKS),
@@ -209,6 +212,8 @@ export class Controls {
       about.truth ? "See\u2011through: what really happened." : "",
       about.weights.length < 2 ? "" : state.future === "all"
         ? `Thin figures: ${about.weights.length - 1} other futures.` : `Future ${state.future} of ${about.weights.length}.`,
+      about.goals && state.layers.has("goals") ? "Lines: the goals, bold where probable." : "",
+      about.goals && state.layers.has("heat") ? "Clouds: where a hand may end, right in red, left in blue." : "",
       state.layers.has("stood") ? "Thin grey lines: where they stood at now." : "",
     ].filter(Boolean).join(" ");
     const whole = state.time.toFixed(2).replace("-", "−");

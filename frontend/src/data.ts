@@ -14,6 +14,7 @@ export interface Description {
   skeleton: { label: string; names: string[]; bones: [number, number][]; hips: number[]; feet: number[]; ends: number[] };
   people: Person[];
   objects: Thing[];
+  goals: boolean; // whether each future ends in a goal of its own
   levels: string[];
   curves: Curve[];
   curvesTitle: string;

@@ -7,6 +7,7 @@ import type { Page } from "./data";
 import { extent, middleOf } from "./extent";
 import { Floor } from "./floor";
 import { Furniture, type Piece } from "./furniture";
+import { Goals } from "./goals";
 import { Labels } from "./labels";
 import { Marks } from "./marks";
 import { ribbon } from "./paths";
@@ -37,6 +38,8 @@ export class Stage {
   private readonly floor: Floor;
   private readonly furniture: Furniture;
   private readonly labels: Labels;
+  private readonly goals: Goals;
+  private readonly chances: Labels; // of the goals
   private readonly ways = new Object3D();
   private readonly centre = new Vector3();
   private faint: Color[] = []; // of the people in other futures
@@ -63,6 +66,8 @@ export class Stage {
     this.furniture = new Furniture(page);
     const texts = ["top", "now", "options", "bar"].map((id) => document.getElementById(id)!);
     this.labels = new Labels(document.getElementById("names")!, about.objects.map((thing) => thing.name), texts);
+    this.goals = new Goals(page, this.futures, this.stood);
+    this.chances = new Labels(document.getElementById("names")!, this.goals.names, texts);
     const sticks = (thick: number, beside: boolean) => new Sticks(people, joints, about.skeleton.bones, thick, beside);
     this.sticks = sticks(THICK, false);
     this.otherSticks = this.futures.map(() => sticks(THIN, true));
@@ -71,6 +76,7 @@ export class Stage {
     this.marks = new Marks(about, about.levels.map((level) => array(`radius/${level}`)));
     this.world.add(
       this.floor, this.marks, this.ways, this.furniture, this.sticks, ...this.otherSticks, this.truthSticks, this.lines,
+      this.goals,
     );
     if (about.bones) {
       const geometry = bodyGeometry(page);
@@ -163,6 +169,7 @@ export class Stage {
     });
     this.marks.end();
     this.showWays(state);
+    this.goals.show(state.layers.has("goals"), state.layers.has("heat"), this.look, this.colors);
     this.showThings(state, frame, main);
     this.renderer.render(this.world, this.eye.camera);
   }
@@ -211,6 +218,7 @@ export class Stage {
       return piece.seeThrough && top.distanceTo(camera.position) < near ? null : top;
     };
     this.labels.show(named ? this.furniture.pieces.map(place) : [], camera, width, height);
+    this.chances.show(state.layers.has("goals") ? this.goals.places() : [], camera, width, height);
   }
 }
 

@@ -3,7 +3,7 @@
 export const CAMERAS = ["follow", "top", "front", "free"] as const;
 export const LOOKS = ["bodies", "bones"] as const;
 export const DOUBTS = ["off", "floor", "joints"] as const;
-export const LAYERS = ["seen", "forecast", "truth", "paths", "stood", "things", "names"] as const;
+export const LAYERS = ["seen", "forecast", "truth", "paths", "stood", "things", "names", "goals", "heat"] as const;
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4] as const;
 
 export type Layer = (typeof LAYERS)[number];

@@ -10,8 +10,10 @@ import pytest
 torch = pytest.importorskip("torch")
 onnxruntime = pytest.importorskip("onnxruntime")
 
-from motioncast.core.basis_points import WIDTH  # noqa: E402
+from motioncast.core.basis_points import WIDTH, hip_frame  # noqa: E402
 from motioncast.core.card import ModelCard  # noqa: E402
+from motioncast.core.skeletons import MRT15  # noqa: E402
+from motioncast.core.voxels import turned_back  # noqa: E402
 from motioncast.models.sast import SAST, SASTConfig  # noqa: E402
 from motioncast.training.export_diffusion import export_diffusion  # noqa: E402
 
@@ -59,7 +61,8 @@ def test_graphs_and_torch_agree(model: SAST, folder: Path, people: int, objects:
     }
     scene, step = (onnxruntime.InferenceSession(folder / f"toy{part}.onnx") for part in (".scene", ""))
     (memory,) = scene.run(None, {"codes": codes, "objects": there})
-    clean, future = step.run(None, given | {"memory": memory, "objects": there})
+    free = {"goal": normal(people, 15, 3), "pull": np.zeros((CONFIG.horizon, people), np.float32)}
+    clean, future = step.run(None, given | free | {"memory": memory, "objects": there})
     assert clean.shape == given["noisy"].shape
     assert future.shape == given["estimate"].shape
     with torch.no_grad():
@@ -71,3 +74,27 @@ def test_graphs_and_torch_agree(model: SAST, folder: Path, people: int, objects:
     np.testing.assert_allclose(memory, tensors["memory"][0], atol=1e-4)
     np.testing.assert_allclose(clean, expected[0][0], atol=1e-4)
     np.testing.assert_allclose(future, expected[1][0], atol=1e-4)
+
+
+def test_a_future_is_led_to_a_goal(folder: Path) -> None:
+    random = np.random.default_rng(4)
+    history = random.normal(size=(CONFIG.history, 2, 15, 3)).astype(np.float32)
+    goal = random.normal(size=(2, 15, 3)).astype(np.float32)
+    hips = [MRT15.index(f"{side}_hip") for side in ("left", "right")]
+    goal[:, hips, :2] = np.array([[-0.1, 0.0], [0.1, 0.0]])
+    pull = np.linspace(0, 1, CONFIG.horizon, dtype=np.float32)[:, None] * np.array([[1, 0]], np.float32)
+    given = {
+        "history": history, "observed": np.ones((CONFIG.history, 2), bool), "level": np.array(2.0, np.float32),
+        "noisy": random.normal(size=(2, CONFIG.horizon, 15, 3)).astype(np.float32),
+        "estimate": np.repeat(history[-1:], CONFIG.horizon, 0),
+        "memory": np.zeros((2, 1, 32), np.float32), "objects": np.zeros(1, bool), "goal": goal,
+    }  # fmt: skip
+    step = onnxruntime.InferenceSession(folder / "toy.onnx")
+    clean, future = step.run(None, given | {"pull": pull})
+    free_clean, free_future = step.run(None, given | {"pull": 0 * pull})
+    np.testing.assert_array_equal(future[:, 1], free_future[:, 1])  # who has no goal
+    np.testing.assert_array_equal(clean[1], free_clean[1])
+    origin, across = hip_frame(future[-1, 0], MRT15)
+    reached = turned_back(future[-1, 0] - origin, across)
+    np.testing.assert_allclose(reached, goal[0], atol=1e-4)
+    assert np.abs(clean[0] - free_clean[0]).max() > 0.01

@@ -57,7 +57,7 @@ def hip_frame(pose: np.ndarray, skeleton: Skeleton) -> tuple[np.ndarray, np.ndar
         >>> [part.round(3).tolist() for part in hip_frame(pose, MRT15)]
         [[1.0, 0.1, 0.0], [0.0, 1.0]]
     """
-    left, right = (pose[..., skeleton.index(f"{side}_hip"), :2] for side in ("left", "right"))
+    left, right = (pose[..., skeleton.landmarks.index(f"{side}_hip"), :2] for side in ("left", "right"))
     across, middle = right - left, (left + right) / 2
     length = np.linalg.norm(across, axis=-1, keepdims=True)
     origin = np.concatenate([middle, np.zeros_like(length)], -1)

@@ -9,6 +9,7 @@ import numpy as np
 
 from motioncast.core import kinematics
 from motioncast.core.card import ModelCard
+from motioncast.core.goal_poses import GoalPoses
 from motioncast.core.scene import Scene
 from motioncast.core.skeleton import Skeleton
 from motioncast.errors import SceneError
@@ -30,6 +31,7 @@ class Forecast:
             truth in that share of cases. Empty where the model states none.
         carried: ``(joints,)`` bool: joints that the model does not know and that were carried along rigidly.
         guessed: ``(people,)`` bool: people for whom a simple guess stands in, since their history is too short.
+        goals: Of futures that each end in a goal: those goals, in the order of the samples.
         seed: Seed of the samples.
         warnings: What the user should know, one sentence each.
     """
@@ -42,6 +44,7 @@ class Forecast:
     radius_m: Mapping[str, np.ndarray] = field(default_factory=dict)
     carried: np.ndarray = None  # pyright: ignore[reportAssignmentType]  # filled on construction
     guessed: np.ndarray = None  # pyright: ignore[reportAssignmentType]  # filled on construction
+    goals: GoalPoses | None = None
     seed: int = 0
     warnings: tuple[str, ...] = ()
 

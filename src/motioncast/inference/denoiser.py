@@ -17,7 +17,9 @@ import numpy as np
 
 from motioncast.core.basis_points import WIDTH, codes, hip_frame
 from motioncast.core.forecaster import Progress
+from motioncast.core.goal_poses import GoalPoses
 from motioncast.core.scene import Scene
+from motioncast.core.voxels import turned_back
 from motioncast.errors import InputError
 from motioncast.inference.diffusion import SAMPLERS, Noise, Schedule, noise_of
 from motioncast.inference.guidance import kept_clear
@@ -27,6 +29,21 @@ from motioncast.inference.shipped import ShippedForecaster
 SEAM_FRAMES, SEAM_FADES = 3, 0.85
 """Frames over which the last velocity seen gives way to the forecast's, and what is left of the detour after each
 frame; on validation rooms the velocity then changes as it does within real motion."""
+
+PULL_S = 1.0
+"""Who has a goal is drawn to it over so long before the end."""
+
+
+class Lead(NamedTuple):
+    """What a future is led to.
+
+    Attributes:
+        goal: The pose of each person in the frame of its hips, ``(people, joints, 3)``.
+        pull: From 0, free, to 1, there; ``(horizon, people)``.
+    """
+
+    goal: np.ndarray
+    pull: np.ndarray
 
 
 class Seen(NamedTuple):
@@ -51,11 +68,13 @@ class DiffusionForecaster(ShippedForecaster):
         sampler: Name of the sampler (``SAMPLERS``). Default: the card's.
         steps: Passes of the denoiser for a sample. Default: the card's.
         guided: Whether futures are kept out of things and of strangers.
+        goals: Poses that the futures end in, one each; None leaves them free.
     """
 
     sampler: str = ""
     steps: int = 0
     guided: bool = True
+    goals: GoalPoses | None = None
 
     def __post_init__(self) -> None:
         stated = self.card.diffusion
@@ -75,6 +94,10 @@ class DiffusionForecaster(ShippedForecaster):
             raise InputError(f'{steps} steps were asked for; "{self.card.name}" takes 1 to {most}')
         return replace(self, sampler=sampler or self.sampler, steps=steps or self.steps)
 
+    def led_to(self, goals: GoalPoses) -> DiffusionForecaster:
+        """The same model, whose n-th future of the goals' scene ends in the n-th of them."""
+        return replace(self, goals=goals)
+
     @property
     def files(self) -> list[Path]:
         """The reader of objects, and the denoiser."""
@@ -92,13 +115,16 @@ class DiffusionForecaster(ShippedForecaster):
         def tick() -> None:
             progress(next(done) / total)
 
-        def future(noise: Noise) -> np.ndarray:
+        def future(number: int) -> np.ndarray:
+            noise, begins = noise_of(people, shape, seed, number), count(0, self.card.horizon)
+
             def one_pass(history: np.ndarray, observed: np.ndarray) -> np.ndarray:
                 answer = np.repeat(history[-1:], self.card.horizon, 0)
                 rolled_on = history is not question.positions
                 seen = self.seen(scene, history[-1, known]) if rolled_on else seen_now
                 there = np.any(observed[:, known], -1)
-                future = self.sampled(history[:, known], there, seen, noise, tick)
+                lead = self.lead(question, known, number, next(begins))
+                future = self.sampled(history[:, known], there, seen, lead, noise, tick)
                 if self.guided:
                     future = kept_clear(history[:, known], future, things, self.card.joints, self.card.fps, floor_m)
                 answer[:, known] = future
@@ -106,7 +132,28 @@ class DiffusionForecaster(ShippedForecaster):
 
             return question.rolled(one_pass)
 
-        return [future(noise_of(people, shape, seed, number)) for number in range(samples)]
+        return [future(number) for number in range(samples)]
+
+    def lead(self, question: Question, known: np.ndarray, number: int, begin: int) -> Lead:
+        """What the people of a question are led to in a pass.
+
+        Args:
+            question: The question.
+            known: Numbers of the people who are denoised.
+            number: Of the sample.
+            begin: Frames of the model before this pass.
+        """
+        joints, horizon = self.card.joints, self.card.horizon
+        if self.goals is None:
+            return Lead(np.zeros((len(known), len(joints), 3), np.float32), np.zeros((horizon, len(known)), np.float32))
+        pose = self.goals.scene(number).on(joints).positions[0, known]
+        origin, across = hip_frame(pose, joints)
+        floor = np.array([0, 0, question.scene.floor_m or 0.0])
+        goal = turned_back(pose - origin[:, None] - floor, across[:, None])
+        missing_s = (question.model_frames - 1 - begin - np.arange(horizon)) / self.card.fps
+        pull = np.clip(1 - missing_s / PULL_S, 0, 1)
+        pull = pull * pull * (3 - 2 * pull)
+        return Lead(goal.astype(np.float32), np.repeat(pull[:, None], len(known), 1).astype(np.float32))
 
     def seen(self, scene: Scene, pose: np.ndarray) -> Seen:
         """What people in a pose ``(people, joints, 3)`` see of a scene, read once for all steps."""
@@ -121,7 +168,13 @@ class DiffusionForecaster(ShippedForecaster):
         return Seen(np.asarray(memory), there, floor_m)
 
     def sampled(
-        self, history: np.ndarray, observed: np.ndarray, seen: Seen, noise: Noise, tick: Callable[[], None]
+        self,
+        history: np.ndarray,
+        observed: np.ndarray,
+        seen: Seen,
+        lead: Lead,
+        noise: Noise,
+        tick: Callable[[], None],
     ) -> np.ndarray:
         """One future of everybody, as long as the model's horizon.
 
@@ -129,6 +182,7 @@ class DiffusionForecaster(ShippedForecaster):
             history: ``(history, people, joints, 3)`` at the model's rate, without gaps.
             observed: Who is there, ``(history, people)``.
             seen: What they see around them.
+            lead: What they are led to.
             noise: Each person's noise, ``(people, horizon, joints, 3)``.
             tick: Called after each pass.
 
@@ -139,7 +193,9 @@ class DiffusionForecaster(ShippedForecaster):
         # the model's floor is at height 0, and far from the origin float32 loses millimetres
         shift = np.array([*history[-1, ..., :2].mean((0, 1)), seen.floor_m])
         near = (history - shift).astype(np.float32)
-        always = {"history": near, "observed": observed, "memory": seen.memory, "objects": seen.objects}
+        always = {
+            "history": near, "observed": observed, "memory": seen.memory, "objects": seen.objects, **lead._asdict(),
+        }  # fmt: skip
         estimate = np.repeat(near[-1:], self.card.horizon, 0)  # at first everybody is taken to stand still
         log_snr = self.schedule.log_snr.astype(np.float32)
 

@@ -129,9 +129,13 @@ class SASTConfig:
 PRESETS: dict[str, SASTConfig] = {
     "motioncast": SASTConfig(shift=-3.0),
     "light": SASTConfig(
-        channels=(64, 128, 192), others_channels=(64, 64, 64), scene_width=128, scene_layers=2, conv_dropout=0.0,
+        channels=(64, 128, 192),
+        others_channels=(64, 64, 64),
+        scene_width=128,
+        scene_layers=2,
+        conv_dropout=0.0,
         shift=-3.0,
-    ),
+    ),  # fmt: skip
     "release": SASTConfig(preset="release", skeleton="hik29", horizon=279, conv_dropout=0.2),
     "paper": SASTConfig(preset="paper", skeleton="hik29", horizon=279, conv_dropout=0.2),
 }
@@ -336,6 +340,8 @@ class SAST(nn.Module):
             ``(B, Q, G, scene_width)``.
         """
         seers = codes.shape[1]
+        if not self.config.scene:
+            return codes.new_zeros(*codes.shape[:3], self.config.scene_width)
         memory = self.scene.encode(codes.flatten(0, 1), for_each(there, seers))
         return memory.view(-1, seers, codes.shape[2], self.config.scene_width)
 
@@ -448,6 +454,12 @@ class SAST(nn.Module):
             features = features.unflatten(0, (batch * asked, count))
         return self.people(tokens, features.transpose(1, 2), absent)
 
+    def scaled(self, history: Tensor, future: Tensor) -> Tensor:
+        """A future ``(B, F, Q, J, 3)`` in metres as a clean answer of the network, ``(B, Q, F, J, 3)``."""
+        frame = stand_on_hips(history[:, -1, : future.shape[2]], self.skeleton)
+        own = to_own(torch.cat([history[:, -1:, : future.shape[2]], future], 1), *frame).transpose(1, 2)
+        return self.scaling.to_model(own[:, :, 1:], own[:, :, :1], self.config.history)
+
     @torch.no_grad()
     def fit_statistics(self, motion: Tensor) -> None:
         """Fit the scaling.
@@ -499,7 +511,8 @@ class SAST(nn.Module):
         noisy = (share.sqrt() * truth + (1 - share).sqrt() * noise).float()
         seen, level, memory = observed[:, : config.history], self.level(step), self.encode_objects(codes, there)
         if estimate is None:
-            estimate = future if config.published else self.guess(history, seen, noisy, level, memory, there)
+            blind = config.published or not config.others
+            estimate = future if blind else self.guess(history, seen, noisy, level, memory, there)
         clean, world = self(history, seen, noisy, estimate, level, memory, there)
         presence = observed[:, config.history :, :asked].float()  # B, F, Q
         if config.preset == "release":

@@ -17,7 +17,10 @@ from torch import Tensor, nn
 
 from motioncast.core.basis_points import WIDTH
 from motioncast.core.card import ModelCard
+from motioncast.core.skeleton import Skeleton
 from motioncast.models.sast import SAST
+from motioncast.nn.frames import turn
+from motioncast.nn.hips import stand_on_hips
 from motioncast.training.export import halved
 
 SCENE = {
@@ -33,6 +36,8 @@ STEP = {
     "level": {},
     "memory": {0: "people", 1: "objects"},
     "objects": {0: "objects"},
+    "goal": {0: "people"},
+    "pull": {1: "people"},
     "clean": {0: "people"},
     "future": {1: "people"},
 }
@@ -51,7 +56,7 @@ class _Scene(nn.Module):
 
 
 class _Step(nn.Module):
-    """One step for everybody in one scene, as a graph."""
+    """One step for everybody in one scene, as a graph; where ``pull`` is above 0 the answer is led to a goal."""
 
     def __init__(self, model: SAST) -> None:
         super().__init__()
@@ -66,11 +71,30 @@ class _Step(nn.Module):
         level: Tensor,
         memory: Tensor,
         objects: Tensor,
+        goal: Tensor,
+        pull: Tensor,
     ) -> tuple[Tensor, Tensor]:
         clean, future = self.model(
             history[None], observed[None], noisy[None], estimate[None], level, memory[None], objects[None]
         )
-        return clean[0], future[0]
+        led = led_to(goal, pull, future, self.model.skeleton)
+        scaled = self.model.scaled(history[None], led)
+        free = pull[None, ..., None, None] == 0
+        return torch.where(free.transpose(1, 2), clean, scaled)[0], torch.where(free, future, led)[0]
+
+
+def led_to(goal: Tensor, pull: Tensor, future: Tensor, skeleton: Skeleton) -> Tensor:
+    """Futures drawn to a pose, wherever the hips are and whichever way they face.
+
+    Args:
+        goal: The pose of each person in the frame of its hips, on the floor (``nn.hips``), ``(P, J, 3)`` metres.
+        pull: From 0, free, to 1, there; ``(F, P)``.
+        future: ``(B, F, P, J, 3)`` metres, world.
+        skeleton: Which joint is which.
+    """
+    origin, across = stand_on_hips(future, skeleton)
+    wanted = turn(goal.expand_as(future), across[..., None, :]) + origin[..., None, :]
+    return future + pull[..., None, None] * (wanted - future)
 
 
 def export_diffusion(model: SAST, card: ModelCard, folder: Path) -> ModelCard:
@@ -95,6 +119,8 @@ def export_diffusion(model: SAST, card: ModelCard, folder: Path) -> ModelCard:
         torch.tensor(0.0),
         torch.randn(people, things, config.scene_width),
         there,
+        poses[0],
+        torch.rand(config.horizon, people),
     )
     scene_path, path = folder / f"{card.name}.scene.onnx", folder / f"{card.name}.onnx"
     _write(_Scene(model), (torch.rand(people, things, WIDTH), there), scene_path, SCENE)

@@ -101,7 +101,9 @@ class RoomsTask:
         for row, (whole, mask, objects) in enumerate(drawn):
             chosen = random.permutation(whole.shape[1])[:people]
             positions[row], present[row] = whole[:, chosen], mask[:, chosen]
-            seen[row, :, : len(objects)] = codes(objects, *hip_frame(positions[row, config.history - 1], self.skeleton))
+            if config.scene:
+                now = positions[row, config.history - 1]
+                seen[row, :, : len(objects)] = codes(objects, *hip_frame(now, self.skeleton))
             there[row, : len(objects)] = True
         step = np.broadcast_to(random.integers(0, config.steps, (scenes, 1)), (scenes, people)).copy()
         noise = random.standard_normal((scenes, people, config.horizon, len(self.skeleton), 3), np.float32)

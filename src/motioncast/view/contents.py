@@ -12,6 +12,7 @@ import numpy as np
 
 from motioncast.bodies.openbody import Bent, bend, load_body
 from motioncast.core.forecast import Forecast
+from motioncast.core.goal_poses import GoalPoses
 from motioncast.core.scene import Scene
 from motioncast.core.skeleton import Skeleton
 from motioncast.errors import SkeletonError
@@ -29,6 +30,9 @@ MOST_FRAMES = 900
 """A longer forecast is shown with fewer frames a second."""
 
 SIDES = ("left", "right")
+
+HOT = 0.03
+"""Voxels whose heat is below this share of the hottest one are not drawn."""
 
 Track = tuple[np.ndarray, np.ndarray, int]
 """Positions and mask of history and one future, and the first frame of them that is kept."""
@@ -80,6 +84,8 @@ def contents(
         grown = np.concatenate([np.zeros((1, radius.shape[1])), radius[ahead]])
         block.add(f"radius/{level}", grown, max(1e-3, float(grown.max()) / 32767))
     bones = _add_bodies(block, tracks, skeleton, origin, scale)
+    if forecast.goals is not None:
+        _add_heat(block, forecast.goals, origin, scale)
 
     drawn, heading = drawn_curves(forecast, truth, curves, ahead)
     places = [skeleton.find(name) for name in ("left_hip", "right_hip")]
@@ -109,6 +115,7 @@ def contents(
             {"id": person, "guessed": person in guessed} for person in history.people
         ],
         "objects": add_objects(block, history.objects, past, origin, scale),
+        "goals": forecast.goals is not None,
         "levels": list(forecast.radius_m),
         "curves": drawn,
         "curvesTitle": heading,
@@ -121,6 +128,23 @@ def contents(
         "arrays": block.entries,
     }  # fmt: skip
     return about, pack(block.arrays)
+
+
+def _add_heat(block: Block, goals: GoalPoses, origin: np.ndarray, scale: float) -> None:
+    """Adds where hands may come to be: points, how hot they are beside the hottest, and whose: 0 right, 1 left."""
+    points, shares, hands = [np.zeros((0, 3))], [np.zeros(0)], [np.zeros(0)]
+    for number, hand in enumerate(("right_wrist", "left_wrist")):
+        person, place, heat = goals.heat_points(hand)
+        hottest = np.zeros(len(goals.people))
+        np.maximum.at(hottest, person, heat)
+        share = heat / np.maximum(hottest[person], 1e-12)
+        hot = share >= HOT
+        points.append(place[hot] - origin)
+        shares.append(share[hot])
+        hands.append(np.full(int(hot.sum()), number))
+    block.add("heat/positions", np.concatenate(points), scale)
+    block.add("heat/weights", np.concatenate(shares), 1e-3)
+    block.add("heat/hands", np.concatenate(hands), 1)
 
 
 def _add_bodies(block: Block, tracks: Mapping[str, Track], skeleton: Skeleton, origin: np.ndarray, scale: float) -> int:

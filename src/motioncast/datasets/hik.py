@@ -1,8 +1,8 @@
 """Humans in Kitchens: four kitchens, up to 16 people at once, 25 frames a second, 29 joints, metres, z up.
 
 The user's own copy holds ``poses/{A|B|C|D}_PID_SEQ.npz``: one stay of one person, ``poses3d`` (frames, 29, 3) and
-``frames`` (their numbers in the recording, from 1). ``scenes/`` (furniture) is not read. Kitchens A, B and C train, D
-tests; 16 of D's 24 people are in the training kitchens too.
+``frames`` (their numbers in the recording, from 1). ``scenes/`` is read by ``hik_furniture.py``. Kitchens A, B and C
+train, D tests; 16 of D's 24 people are in the training kitchens too.
 
 The evaluation list ``test.json`` (public, with the owners' code) names 961 items of D (and 2,057 of the others): an
 action, the person who does it, and the first frame to forecast. The 250 frames before are history, the 250 from it on

@@ -35,6 +35,21 @@ def test_demo(command, tmp_path: Path) -> None:
     assert truth.frames == len(forecast.best)
 
 
+def test_demo_of_the_room(command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("motioncast.cli.demo.FUTURES", 2)
+    done = command("demo", "--room", "--out", "here")
+    assert done.status == 0
+    (head, *rows) = [line for line in done.out.splitlines() if line.startswith((" ", "person "))]
+    assert head.split() == ["truly", "future", "1", "future", "2"]
+    forecast, truth = load_forecast(tmp_path / "here" / "room.npz"), load_truth(tmp_path / "here" / "room.npz")
+    assert forecast.samples.shape[:2] == (2, 250)
+    assert len(rows) == len(forecast.people) > 1
+    assert len(forecast.history.objects) > 20
+    assert truth is not None
+    assert truth.frames == 250
+    assert (tmp_path / "here" / "room.html").is_file()
+
+
 def test_info_shows_the_mapping(walk: Path, command) -> None:
     done = command("info", walk)
     assert done.status == 0

@@ -15,7 +15,7 @@ from motioncast.cli.say import complain
 from motioncast.errors import InputError, MotioncastError
 
 COMMANDS = {
-    "demo": "Forecast the shipped dancing couple and compare with what really happened.",
+    "demo": "Forecast the shipped dancing couple, or a room, and compare with what really happened.",
     "forecast": "Forecast the people of a scene file, or of several motion files of one world and clock.",
     "info": "Say what a motion file holds: people, frame rate, joints and what they were recognised as.",
     "view": "Show a forecast as an interactive page.",

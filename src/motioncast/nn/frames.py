@@ -15,7 +15,8 @@ from motioncast.core.skeleton import Skeleton
 def side_joints(skeleton: Skeleton) -> list[tuple[int, int]]:
     """Pairs (left, right) of the hips and of the shoulders."""
     return [
-        (skeleton.names.index(f"left_{place}"), skeleton.names.index(f"right_{place}")) for place in ("hip", "shoulder")
+        (skeleton.landmarks.index(f"left_{place}"), skeleton.landmarks.index(f"right_{place}"))
+        for place in ("hip", "shoulder")
     ]
 
 

@@ -4,7 +4,7 @@ import http.client
 import json
 import socket
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -77,6 +77,18 @@ def test_motions_of_one_table_do_not_touch_one_another(file: Path, tmp_path: Pat
     desk.keep(1, [row(5)])
     desk.keep(0, [row(4)])
     assert [(moment.take, round(30 * moment.second)) for moment in read_moments(table)] == [("a", 4), ("b", 5)]
+
+
+def test_few_motions_are_held_and_the_last_ones_are_not_read_again(file: Path, tmp_path: Path) -> None:
+    read: list[int] = []
+
+    def reader(number: int) -> Callable[[], Scene]:
+        return lambda: read.append(number) or load_scene(file)
+
+    desk = Desk([Motion(f"m{number}", reader(number), tmp_path / "t.tsv") for number in range(5)])
+    for number in (0, 1, 0, 2, 0, 3, 0, 1):
+        desk.opened(number)
+    assert read == [0, 1, 2, 3, 1]
 
 
 @pytest.mark.parametrize(

@@ -24,6 +24,7 @@ async function start(): Promise<void> {
   let editing: Editing | null = null;
   let frame = 0, person = 0, playing = false, stale = true;
   let saving: Promise<void> = Promise.resolve();
+  let ahead: [number, Promise<Motion>] | null = null; // the next motion, asked for while this one is looked at
   const view = new View(document.getElementById("stage") as HTMLCanvasElement, () => { stale = true; });
   const seek = (to: number) => {
     frame = Math.min(Math.max(to, 0), shown!.shape[0] - 1);
@@ -51,12 +52,15 @@ async function start(): Promise<void> {
   const open = async (which: number) => {
     await saving;
     number = (which + entries.length) % entries.length;
-    shown = await motion(number);
+    shown = await (ahead?.[0] === number ? ahead[1] : motion(number));
     editing = new Editing(shown.moments, shown.fps, save);
     [person, playing] = [0, false];
     view.open(shown);
     seek(editing.of(person).find((moment) => moment.source === "auto")?.frame ?? 0);
     refresh();
+    const following = (number + 1) % entries.length;
+    ahead = following === number ? null : [following, motion(following)];
+    ahead?.[1].catch(() => { ahead = null; }); // it is asked for again, and complained about, when it is opened
   };
   const next = async (step: number) => {
     if (step > 0) save(); // a motion that was passed by counts as looked at

@@ -9,6 +9,7 @@ a step), so a score compares answers, and says nothing by itself.
 from __future__ import annotations
 
 import copy
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,19 +31,22 @@ class PoseKinds:
         network: From poses ``(N, 3 J)`` to scores ``(N, kinds)``.
         kinds: What it tells apart.
         skeleton: Which joint is which.
-        accuracy: Share of the validation poses that it tells right, each kind counting alike.
     """
 
     network: nn.Module
     kinds: tuple[str, ...]
     skeleton: Skeleton
-    accuracy: float
 
     @torch.no_grad()
     def probabilities(self, poses: np.ndarray) -> np.ndarray:
         """Probability of each kind, ``(..., kinds)``, of poses ``(..., J, 3)`` metres around the hip."""
         scores = self.network(seen_from_itself(poses, self.skeleton))
         return torch.softmax(scores, -1).numpy().reshape(*poses.shape[:-2], -1)
+
+    def accuracy(self, poses: np.ndarray, kinds: Sequence[str]) -> float:
+        """Share of poses ``(N, J, 3)`` whose kind it tells right."""
+        told = np.array(self.kinds)[self.probabilities(poses).argmax(-1)]
+        return float(np.mean(told == np.array(kinds)))
 
 
 def seen_from_itself(poses: np.ndarray, skeleton: Skeleton) -> Tensor:
@@ -52,19 +56,20 @@ def seen_from_itself(poses: np.ndarray, skeleton: Skeleton) -> Tensor:
 
 
 def fit(
-    poses: np.ndarray, kinds: list[str], checks: np.ndarray, check_kinds: list[str], skeleton: Skeleton, seed: int = 0
+    poses: np.ndarray,
+    kinds: Sequence[str],
+    checks: np.ndarray,
+    check_kinds: Sequence[str],
+    skeleton: Skeleton,
+    seed: int = 0,
 ) -> PoseKinds:
-    """A classifier trained on poses ``(N, J, 3)``; the epoch is that of the lowest loss on the checks.
-
-    Rare kinds count as much as frequent ones.
-    """
+    """A classifier trained on poses ``(N, J, 3)``; the epoch is that of the lowest loss on the checks."""
     torch.manual_seed(seed)
     names = tuple(sorted(set(kinds)))
     given, labels = seen_from_itself(poses, skeleton), torch.tensor([names.index(kind) for kind in kinds])
     known = [row for row, kind in enumerate(check_kinds) if kind in names]
     asked = seen_from_itself(checks[known], skeleton)
     truth = torch.tensor([names.index(check_kinds[row]) for row in known])
-    weights = len(labels) / (len(names) * labels.bincount(minlength=len(names)).float())
     network = nn.Sequential(
         nn.Linear(given.shape[1], WIDTH), nn.ReLU(), nn.Dropout(DROPOUT),
         nn.Linear(WIDTH, WIDTH), nn.ReLU(), nn.Dropout(DROPOUT), nn.Linear(WIDTH, len(names)),
@@ -75,14 +80,11 @@ def fit(
         network.train()
         for rows in torch.randperm(len(given)).split(BATCH):
             optimiser.zero_grad()
-            functional.cross_entropy(network(given[rows]), labels[rows], weights).backward()
+            functional.cross_entropy(network(given[rows]), labels[rows]).backward()
             optimiser.step()
         network.eval()
         with torch.no_grad():
-            loss = float(functional.cross_entropy(network(asked), truth, weights))
+            loss = float(functional.cross_entropy(network(asked), truth))
         if loss < best:
             best, kept = loss, copy.deepcopy(network)
-    with torch.no_grad():
-        right = (kept.eval()(asked).argmax(1) == truth).float()
-    accuracy = float(torch.stack([right[truth == kind].mean() for kind in truth.unique()]).mean())
-    return PoseKinds(kept, names, skeleton, accuracy)
+    return PoseKinds(kept.eval(), names, skeleton)

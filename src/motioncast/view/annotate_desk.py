@@ -21,6 +21,9 @@ SHOWN_FPS = 31.0
 
 MOST_NOTE = 200
 
+HELD = 3
+"""Motions that are held at once: the one that is shown, the one before and the next."""
+
 
 @dataclass(frozen=True, slots=True)
 class Motion:
@@ -62,7 +65,7 @@ class Desk:
             table: read_moments(table) if table.is_file() else []
             for table in dict.fromkeys(motion.table for motion in motions)
         }
-        self._shown: tuple[int, Scene, int] | None = None
+        self._held: dict[int, Scene] = {}
 
     def listed(self) -> list[dict[str, Any]]:
         """Name of each motion, its moments, how many were not looked at, and whether it was seen at all."""
@@ -134,11 +137,12 @@ class Desk:
         return [moment for moment in self.tables[motion.table] if moment.take == motion.name]
 
     def _scene(self, number: int) -> tuple[Scene, int]:
-        """A motion, kept for when it is asked for again, and how many of its frames a shown one stands for."""
-        if self._shown is None or self._shown[0] != number:
-            scene = self.motions[number].load()
-            self._shown = (number, scene, max(1, int(np.ceil(scene.fps / SHOWN_FPS))))
-        return self._shown[1:]
+        """A motion, held for when it is asked for again, and how many of its frames a shown one stands for."""
+        scene = self._held.pop(number, None) or self.motions[number].load()
+        self._held[number] = scene  # the last one that was asked for stands last
+        if len(self._held) > HELD:
+            del self._held[next(iter(self._held))]
+        return scene, max(1, int(np.ceil(scene.fps / SHOWN_FPS)))
 
 
 def found(scene: Scene, take: str) -> list[Moment]:

@@ -22,7 +22,7 @@ class ModelCard:
     Attributes:
         name: Name by which it is loaded.
         system: The system that it implements, such as ``SoMoFormer``.
-        task: What it answers; ``forecast`` for positions ahead.
+        task: What it answers: ``forecast`` for positions ahead, ``goals`` for poses, ``actions`` for steps.
         skeleton: Name of its skeleton (``core.skeletons.SKELETONS``), or ``any``.
         history: Frames that it reads.
         horizon: Frames that it answers in one pass.
@@ -32,6 +32,7 @@ class ModelCard:
         stochastic: Whether several samples differ.
         diffusion: Of a model that denoises: ``steps`` and ``shift`` of its cosine schedule, and the ``sampler`` and
             number of ``sampling_steps`` that answer by default; empty of all others.
+        needs: What it must be told besides: of steps, the ``labels`` and ``objects`` that it knows.
         source: Paper and equations.
         data: What it was trained on.
         licence: Licence of code, data and weights.
@@ -56,6 +57,7 @@ class ModelCard:
     parameters: int = 0
     stochastic: bool = False
     diffusion: Mapping[str, Any] = field(default_factory=dict)
+    needs: Mapping[str, Any] = field(default_factory=dict)
     source: str = ""
     data: str = ""
     licence: str = ""

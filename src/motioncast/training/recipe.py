@@ -45,8 +45,9 @@ class Recipe:
             actor (the couple by take), and one part is left out.
         fold: The part that is left out.
         task: What it learns from: ``windows`` of takes, composed ``rooms`` with their furniture, or ``room-windows``,
-            the people of such rooms alone.
+            the people of such rooms alone, or ``actions`` of the kitchen grammar.
         rooms: Number of rooms that are built for it.
+        moments: Of actions: which pose stands for a step (``datasets/kitchen``).
         card: What the model's card says of source, limits and exceptions.
         seed: Seed of everything.
     """
@@ -79,6 +80,7 @@ class Recipe:
     fold: int = 0
     task: str = "windows"
     rooms: int = 200
+    moments: str = "characteristic"
     card: dict[str, Any] = field(default_factory=dict)
 
 

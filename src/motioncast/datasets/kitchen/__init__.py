@@ -5,6 +5,6 @@ camera sees of it. The truth behind the pixels is for measuring only.
 """
 
 from motioncast.datasets.kitchen.dishes import LABELS, OBJECTS
-from motioncast.datasets.kitchen.sequences import Moments, bank, sequence, sequences, uncoupled
+from motioncast.datasets.kitchen.sequences import bank, sequence, sequences, uncoupled
 
-__all__ = ["LABELS", "OBJECTS", "Moments", "bank", "sequence", "sequences", "uncoupled"]
+__all__ = ["LABELS", "OBJECTS", "bank", "sequence", "sequences", "uncoupled"]

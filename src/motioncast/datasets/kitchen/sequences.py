@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Literal
 
 import numpy as np
 
+from motioncast.core.action_sequence import ActionSequence
 from motioncast.core.camera import Camera, look_at
 from motioncast.core.rotation import from_euler, rotate
 from motioncast.core.skeletons import UPPER9
 from motioncast.core.upper_body import from_neck
-from motioncast.datasets.action_sequence import ActionSequence
-from motioncast.datasets.kitchen.dishes import LABELS, draw_objects, draw_pair, draw_steps
+from motioncast.datasets.kitchen.dishes import LABELS, OBJECTS, draw_objects, draw_pair, draw_steps
 from motioncast.datasets.kitchen.motion import MEAN_S, Motion, draw_style, perform
 from motioncast.errors import InputError
 
 SPLITS = {"train": 0, "validation": 1, "test": 2, "bank": 3}
 """Number of each split in the seed of its sequences; the bank's cooks are in no other."""
 
-Moments = Literal["characteristic", "middle", "random"]
+MOMENTS = ("characteristic", "middle", "random")
 """Which pose stands for a step: the characteristic one, that in its middle, or any."""
 
 FURTHEST_ASIDE = 0.8
@@ -33,7 +32,7 @@ APART_M = 1.3
 
 
 def sequence(
-    split: str, number: int, seed: int = 0, people: int = 1, moments: Moments = "characteristic"
+    split: str, number: int, seed: int = 0, people: int = 1, moments: str = "characteristic"
 ) -> ActionSequence:
     """One sequence; the same arguments give the same numbers.
 
@@ -42,10 +41,10 @@ def sequence(
         number: Which one.
         seed: Of the whole set.
         people: One cook or two.
-        moments: Which pose stands for a step.
+        moments: Which pose stands for a step (``MOMENTS``).
 
     Raises:
-        InputError: If there is no such split.
+        InputError: If there is no such split, or no such moments.
 
     Example:
         >>> one = sequence("train", 0)
@@ -58,7 +57,7 @@ def sequence(
 
 
 def sequences(
-    split: str, count: int, seed: int = 0, people: int = 1, moments: Moments = "characteristic"
+    split: str, count: int, seed: int = 0, people: int = 1, moments: str = "characteristic"
 ) -> Iterator[ActionSequence]:
     """The first sequences of a split; arguments as of :func:`sequence`."""
     return (sequence(split, number, seed, people, moments) for number in range(count))
@@ -120,6 +119,7 @@ def seen_at(
         actions=np.stack([motion.actions for motion in motions], 1)[steps],
         pixels=exact + random.normal(0, random.uniform(*NOISE_PX), exact.shape),
         camera=camera,
+        things=OBJECTS,
         objects=objects,
         positions=positions,
     )
@@ -130,8 +130,10 @@ def moved(pose: np.ndarray, person: int, people: int) -> np.ndarray:
     return pose if people == 1 else pose + np.array([0.0, APART_M * (0.5 - person), 0.0])
 
 
-def moments_of(motion: Motion, moments: Moments, random: np.random.Generator) -> np.ndarray:
+def moments_of(motion: Motion, moments: str, random: np.random.Generator) -> np.ndarray:
     """When each step is looked at, ``(steps,)`` seconds."""
+    if moments not in MOMENTS:
+        raise InputError(f'no pose of a step is called "{moments}"; choose one of {", ".join(MOMENTS)}')
     if moments == "characteristic":
         return motion.peak_s
     share = 0.5 if moments == "middle" else random.random(len(motion.steps))
@@ -146,7 +148,9 @@ def draw_camera(random: np.random.Generator, people: int = 1) -> Camera:
 
 
 def bank(count: int, seed: int = 0, poses_of_one: int = 128) -> np.ndarray:
-    """Real poses that belong to no video: cooks of their own at any moment, mirrored or not, seen from any side.
+    """Real poses that belong to no video: cooks of their own at any moment, mirrored or not, turned at random.
+
+    Nobody is turned farther from the camera than kitchens have them, since a camera is put up to see what is done.
 
     Args:
         count: Number of poses.
@@ -160,13 +164,14 @@ def bank(count: int, seed: int = 0, poses_of_one: int = 128) -> np.ndarray:
     for number in range(-(-count // poses_of_one)):
         random, _, (motion,), camera = scenery("bank", number, seed, 1)
         poses = motion.at(random.uniform(0, motion.ends_s[-1], poses_of_one))
-        found.append(from_any_side(poses, camera, random))
+        found.append(turned_at_random(poses, camera, random))
     return np.concatenate(found)[:count]
 
 
-def from_any_side(poses: np.ndarray, camera: Camera, random: np.random.Generator) -> np.ndarray:
+def turned_at_random(poses: np.ndarray, camera: Camera, random: np.random.Generator) -> np.ndarray:
     """Poses ``(n, 9, 3)`` of a world, half of them mirrored, each turned at random, along a camera's axes."""
     mirrored = poses[:, list(UPPER9.mirror())] * np.array([1.0, -1.0, 1.0])
     poses = np.where(random.random((len(poses), 1, 1)) < 0.5, mirrored, poses)
-    yaw = from_euler(random.uniform(-np.pi, np.pi, (len(poses), 1, 1)), "z")
+    ahead = np.arctan2(camera.position[1], camera.position[0])
+    yaw = from_euler(ahead + random.uniform(-FURTHEST_ASIDE, FURTHEST_ASIDE, (len(poses), 1, 1)), "z")
     return from_neck(camera.seen(rotate(yaw, poses))).astype(np.float32)

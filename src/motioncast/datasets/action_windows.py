@@ -1,4 +1,4 @@
-"""Videos as sequences of steps, and the windows of past and future that are cut from them."""
+"""Windows of past and future steps, cut from videos, as arrays that a model learns from."""
 
 from __future__ import annotations
 
@@ -7,47 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from motioncast.core.camera import Camera
-from motioncast.core.skeletons import UPPER9
+from motioncast.core.action_sequence import ActionSequence
 from motioncast.core.upper_body import NECK, depth_m, from_neck
 from motioncast.errors import SceneError
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ActionSequence:
-    """What people do before one camera, step by step.
-
-    Attributes:
-        name: Name of the video.
-        labels: Every action that its data set knows.
-        actions: What each does, ``(steps, people)``, indices of ``labels``.
-        pixels: In which pose, ``(steps, people, 9, 2)``, joints of ``core.skeletons.UPPER9``; NaN where not seen.
-        camera: The camera.
-        objects: Which things are there, ``(objects,)`` bool; empty where nobody says.
-        positions: The truth, ``(steps, people, 9, 3)`` metres, world, where it is known: to measure, never to train.
-
-    Raises:
-        SceneError: If shapes disagree.
-    """
-
-    name: str
-    labels: tuple[str, ...]
-    actions: np.ndarray
-    pixels: np.ndarray
-    camera: Camera
-    objects: np.ndarray
-    positions: np.ndarray | None = None
-
-    def __post_init__(self) -> None:
-        wanted = (*self.actions.shape, len(UPPER9))
-        if self.pixels.shape != (*wanted, 2) or (self.positions is not None and self.positions.shape != (*wanted, 3)):
-            raise SceneError(
-                f"{self.name}: poses have shape {self.pixels.shape} where actions have {self.actions.shape}; expected "
-                "one pose of 9 joints a step and person"
-            )
-
-    def __len__(self) -> int:
-        return len(self.actions)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -138,7 +100,7 @@ def _windows(
     truth: Iterable[np.ndarray] = (),
 ) -> ActionWindows:
     """Windows of pixels ``(windows, steps, people, 9, 2)``, NaN where not seen."""
-    finite = np.isfinite(pixels).all(-1)
+    finite = np.all(np.isfinite(pixels), -1)
     seen = finite & finite[..., NECK : NECK + 1]
     cameras = [owner.camera for owner in owners]
     depth = [depth_m(past, camera.focal_px) for past, camera in zip(pixels[:, :history], cameras, strict=True)]

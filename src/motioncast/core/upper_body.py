@@ -48,3 +48,34 @@ def depth_m(pixels: np.ndarray, focal_px: float) -> np.ndarray:
             "away that is; give steps in which both are seen"
         )
     return focal_px * TRUNK_M / longest
+
+
+def most_articulated(pixels: np.ndarray, first: int, end: int) -> int:
+    """The frame of a step in which the hands are farthest from where they usually are in the whole video.
+
+    Args:
+        pixels: One person's poses, ``(frames, 9, 2)``; NaN where not seen.
+        first: First frame of the step.
+        end: The frame after its last.
+
+    Raises:
+        SceneError: If none of its frames shows a hand and the neck.
+
+    Example:
+        >>> poses = np.zeros((5, 9, 2))
+        >>> poses[3, UPPER9.index("left_wrist")] = 40, 30
+        >>> most_articulated(poses, 1, 5)
+        3
+    """
+    hands = from_neck(pixels)[:, [UPPER9.index("right_wrist"), UPPER9.index("left_wrist")]]
+    seen: np.ndarray = ~np.isnan(hands[..., 0])
+    if not seen[first:end].any():
+        raise SceneError(
+            f"frames {first} to {end - 1} show no hand together with the neck; leave that step out, or name its "
+            "characteristic frame"
+        )
+    far = np.zeros(seen.shape)
+    for hand, there in enumerate(seen.T):
+        usual = np.median(hands[there, hand], 0)
+        far[there, hand] = np.linalg.norm(hands[there, hand] - usual, axis=-1)
+    return first + int(far[first:end].sum(1).argmax())

@@ -10,12 +10,10 @@ import pytest
 from motioncast.core.skeletons import UPPER9
 from motioncast.datasets import kitchen
 from motioncast.datasets.action_windows import cut_steps, window_of
-from motioncast.datasets.kitchen.dishes import ITEMS, LABELS, PLACES, draw_objects, draw_pair, draw_steps
+from motioncast.datasets.kitchen.dishes import DISHES, ITEMS, LABELS, PLACES, draw_objects, draw_pair, draw_steps
 from motioncast.datasets.kitchen.sequences import scenery
 from motioncast.errors import InputError, SceneError
 from motioncast.metrics.actions import asymmetry
-
-HOMES = {item.home for item in ITEMS}
 
 
 def test_the_same_seed_gives_the_same_numbers_and_splits_differ():
@@ -37,29 +35,45 @@ def test_only_what_is_there_is_taken():
         assert {step.place for step in steps} <= set(PLACES)
 
 
-def test_two_items_share_a_home_and_differ_in_what_is_done():
-    for home in HOMES:
-        one, other = (item for item in ITEMS if item.home == home)
-        assert one.work != other.work
+def work(name):
+    """The labels and the places of what is done with an item."""
+    item = next(item for item in ITEMS if item.name == name)
+    return tuple(step.label for step in item.work), item.home, item.work[-1].place
 
 
-def test_what_was_taken_tells_what_is_done_and_its_label_does_not():
-    """The entropy of the first label after the last ``take``: of its label alone, and of its place besides."""
-    random, after = np.random.default_rng(1), []
-    for _ in range(300):
-        steps = draw_steps(draw_objects(random), random)
-        after += [
-            (one.place, two.label)
-            for before, one, two in zip(steps[:-2], steps[1:-1], steps[2:], strict=True)
-            if one.label == "take" and "take" not in (before.label, two.label)
-        ]
+def test_neither_labels_nor_places_alone_tell_an_item():
+    ways = Counter(work(item.name)[0] for item in ITEMS)
+    homes = Counter(item.home for item in ITEMS)
+    assert set(ways.values()) == {4}
+    assert set(homes.values()) == {2}
+    assert len({work(item.name) for item in ITEMS}) == len(ITEMS)
 
-    def entropy(pairs: list) -> float:
-        joint, known = Counter(pairs), Counter(place for place, _ in pairs)
-        return -sum(count * np.log2(count / known[place]) for (place, _), count in joint.items()) / len(pairs)
 
-    assert entropy([("", label) for _, label in after]) > 2.0
-    assert 0.5 < entropy(after) < 1.1  # two items share each home
+def test_dishes_have_twins_that_labels_tell_apart_after_three_items():
+    for dish, twin in zip(DISHES[::2], DISHES[1::2], strict=True):
+        one, other = ([work(name)[0] for name in names] for names in (dish, twin))
+        assert one[:3] == other[:3]
+        assert one[3:] != other[3:]
+        assert [work(name)[1:] for name in dish[:3]] != [work(name)[1:] for name in twin[:3]]
+
+
+def test_places_tell_labels_ahead_and_labels_tell_places_ahead():
+    """What is known four steps ahead from three steps, in bits of the label and of the place left open."""
+    random, rows = np.random.default_rng(1), []
+    for _ in range(400):
+        steps = draw_steps(np.ones(12, bool), random)
+        for at in range(3, len(steps) - 4):
+            past = steps[at - 3 : at]
+            labels, places = tuple(step.label for step in past), tuple(step.place for step in past)
+            rows.append((labels, places, steps[at + 3].label, steps[at + 3].place))
+
+    def left_open(what, known):
+        pairs = [(tuple(row[part] for part in known), row[what]) for row in rows]
+        joint, alone = Counter(pairs), Counter(past for past, _ in pairs)
+        return -sum(count * np.log2(count / alone[past]) for (past, _), count in joint.items()) / len(pairs)
+
+    assert left_open(2, (0, 1)) < left_open(2, (0,)) - 0.3
+    assert left_open(3, (0, 1)) < left_open(3, (1,)) - 0.1
 
 
 def test_two_cooks_meet_to_hand_over():

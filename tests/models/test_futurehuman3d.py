@@ -29,7 +29,7 @@ def asked(people: int = 1, count: int = 3) -> Past:
 def test_the_papers_size():
     model = FutureHuman3D(PRESETS["paper"])
     made = sum(part.numel() for name, part in model.named_parameters() if not name.startswith("critic"))
-    assert made == 1_421_440 or 1_000_000 < made < 2_000_000
+    assert made == 1_323_389
     assert sum(part.numel() for part in model.critic.parameters()) == 80_001
 
 
@@ -81,7 +81,7 @@ def test_without_objects_none_are_read():
 def test_two_people_tell_each_other_only_when_pooled():
     past = asked(people=2)
     actions = past.actions.clone()
-    actions[:, -1, 1] = (actions[:, -1, 1] + 1) % 16
+    actions[:, -1, 1] = (actions[:, -1, 1] + 1) % 14
     for pooled in (True, False):
         model = FutureHuman3D(replace(SMALL, people=2, pooled=pooled)).eval()
         one, other = (model(told, model.silence(past)).logits[:, 0] for told in (past, past._replace(actions=actions)))

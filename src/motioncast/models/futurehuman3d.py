@@ -18,7 +18,8 @@ the text leaves open is decided so:
 - Where joints are not seen they are zero and told to be missing, like steps before the first.
 
 Two presets. ``paper`` compares in pixels, with weights 1e6, 1 and 1, over the ten steps of its cooking data.
-``motioncast`` compares in tenths of a metre.
+``motioncast`` compares in tenths of a metre, and reads each past step, pose and action, by layers that all steps share
+before they are joined: what is taken where means the same whenever it was.
 
 Two people (appendix): each has encoders and decoders of its own; a code joined by social pooling tells each of the
 other: where it stands, and the strongest of its features (Social GAN).
@@ -57,6 +58,7 @@ class FutureHuman3DConfig:
         preset: ``motioncast`` or ``paper`` (see the module).
         reads_poses: Whether past poses are seen.
         reads_actions: Whether past actions are.
+        step_width: Features of a past step, before steps are joined; not of the preset ``paper``.
         pose_width: Features of the pose encoder.
         action_width: Of the action encoder.
         object_width: Of the object encoder.
@@ -68,7 +70,7 @@ class FutureHuman3DConfig:
         critic_weight: Weight of the critic's score; 0: there is no critic.
     """
 
-    actions: int = 16
+    actions: int = 14
     objects: int = 12
     history: int = 10
     steps: int = 10
@@ -77,6 +79,7 @@ class FutureHuman3DConfig:
     preset: Literal["motioncast", "paper"] = "motioncast"
     reads_poses: bool = True
     reads_actions: bool = True
+    step_width: int = 64
     pose_width: int = 256
     action_width: int = 128
     object_width: int = 64
@@ -149,8 +152,12 @@ class Encoder(nn.Module):
     def __init__(self, config: FutureHuman3DConfig) -> None:
         super().__init__()
         self.config = config
-        wide, joints = config.pose_width, len(UPPER9)
-        self.poses = nn.Sequential(nn.Linear(config.history * joints * 3, wide), *(ResidualBlock(wide) for _ in "123"))
+        wide, told = config.pose_width, 3 * len(UPPER9)
+        self.step = (
+            None if config.preset == "paper" else layers(told + config.actions, config.step_width, config.step_width)
+        )
+        entering = config.history * (told if self.step is None else config.step_width)
+        self.poses = nn.Sequential(nn.Linear(entering, wide), *(ResidualBlock(wide) for _ in "123"))
         self.actions = layers(config.history * config.actions, config.action_width, config.action_width)
         self.objects = layers(max(config.objects, 1), config.object_width, config.object_width)
         joined = wide + config.action_width + config.object_width + config.noise
@@ -159,15 +166,17 @@ class Encoder(nn.Module):
     def forward(self, offsets: Tensor, seen: Tensor, actions: Tensor, objects: Tensor, noise: Tensor) -> Tensor:
         """A code ``(B, width)`` of offsets ``(B, H, J, 2)`` and the rest."""
         config = self.config
-        poses = torch.cat([offsets, seen[..., None].to(offsets.dtype)], -1).flatten(1)
-        done = one_hot(actions + 1, config.actions + 1)[..., 1:].to(offsets.dtype).flatten(1)
+        poses = torch.cat([offsets, seen[..., None].to(offsets.dtype)], -1).flatten(2)
+        done = one_hot(actions + 1, config.actions + 1)[..., 1:].to(offsets.dtype)
         if not config.reads_poses:
             poses = torch.zeros_like(poses)
         if not config.reads_actions:
             done = torch.zeros_like(done)
         if not config.objects:
             objects = torch.zeros_like(objects[:, :1])
-        return self.join(torch.cat([self.poses(poses), self.actions(done), self.objects(objects), noise], 1))
+        steps = poses if self.step is None else self.step(torch.cat([poses, done], -1))
+        codes = (self.poses(steps.flatten(1)), self.actions(done.flatten(1)), self.objects(objects))
+        return self.join(torch.cat([*codes, noise], 1))
 
 
 class Decoder(nn.Module):
@@ -301,6 +310,12 @@ class FutureHuman3D(nn.Module):
             seen=torch.cat([past.seen[:, 1:], torch.ones_like(past.seen[:, :1])], 1),
             actions=torch.cat([past.actions[:, 1:], likely], 1),
         )
+
+    def start_from(self, pose: Tensor) -> None:
+        """Let the untrained model answer a pose ``(J, 3)``, such as the mean of the bank."""
+        for decoder in self.decoders:
+            assert isinstance(decoder, Decoder)
+            decoder.start_from(pose)
 
     def silence(self, past: Past) -> Tensor:
         """Noise of zeros for the usual answer."""

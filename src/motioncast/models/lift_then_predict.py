@@ -21,15 +21,21 @@ class LiftThenPredict(FutureHuman3D):
     def __init__(self, config: FutureHuman3DConfig) -> None:
         super().__init__(config)
         wide, joints = config.pose_width, len(UPPER9)
-        blocks = (ResidualBlock(wide) for _ in "12")
-        self.lifter = nn.Sequential(nn.Linear(3 * joints, wide), *blocks, nn.Linear(wide, 3 * joints))
+        self.lifter = nn.Sequential(nn.Linear(3 * joints, wide), *(ResidualBlock(wide) for _ in "12"))
+        self.lifted = nn.Linear(wide, 3 * joints)
+
+    def start_from(self, pose: Tensor) -> None:
+        """As FutureHuman3D does; the lifter answers the pose, too."""
+        super().start_from(pose)
+        with torch.no_grad():
+            self.lifted.bias.copy_(pose.flatten())
 
     def lift(self, past: Past, pixels: Tensor, seen: Tensor) -> Step:
         """The poses of one step ``(B, P, J, 2)``, in 3D and again in the image."""
         _, scale = self.view(past)
         offsets = (pixels - pixels[:, :, NECK : NECK + 1]) * scale[:, :, None] * seen[..., None]
         told = torch.cat([offsets, seen[..., None].to(offsets.dtype)], -1).flatten(2)
-        poses = self.lifter(told).unflatten(-1, (len(UPPER9), 3))
+        poses = self.lifted(self.lifter(told)).unflatten(-1, (len(UPPER9), 3))
         return self.in_image(past, poses - poses[:, :, NECK : NECK + 1])
 
     def pose_loss(self, step: Step, past: Past, pixels: Tensor, seen: Tensor) -> Tensor:

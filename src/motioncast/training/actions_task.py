@@ -68,8 +68,7 @@ class ActionsTask:
         self.train = self.windows("train", recipe.scenes)
         self.validation = self.windows("validation", VALIDATION_SEQUENCES)
         self.bank = self.real_poses()
-        for decoder in model.decoders:
-            decoder.start_from(torch.from_numpy(self.bank.mean(0)))
+        model.start_from(torch.from_numpy(self.bank.mean(0)))
         self.critic_optimiser = torch.optim.Adam(model.critic.parameters(), recipe.learning_rate, betas=(0.5, 0.9))
         self.drawn = 0
 

@@ -1,10 +1,17 @@
-"""What a cook does, in words: items are laid out, then worked on in that order; a chain whose memory is long.
+"""What a cook does, in words: dishes of five items, each fetched from its home and worked on.
 
-A *round* takes one to four of the items that the kitchen has and that are not used up (``take`` at the home of each),
-works on one after the other by its own list of actions, and may end with seasoning, stirring, serving. A label alone
-does not tell what was taken: two items share a home, and six homes share the label. A place alone does not tell what is
-done there: the same hands over the board peel, cut, open or spread. What comes next follows from both, and from what
-was taken many steps before: one step ahead of a ``take`` everything is open to who saw the label only.
+The chain has a long memory, and neither labels nor places alone tell what comes next:
+
+- There are three ways to work, and each is that of four items: by labels they are alike. An item is told by where it
+  was fetched and by where the work ends.
+- A home holds two items: by the place they are alike. Peeling and opening look nearly the same, and one goes on at the
+  board where the other does not.
+- A dish is a list of items. Every dish has a twin whose first three items are worked on by the same labels, and which
+  then goes on differently. So what comes many steps later follows from poses seen now.
+- A cook fetches one, two or three items at once, always as many, and works on them in that order.
+
+The rest is chance: which items there are (the missing ones are left out), which dish comes next, an action that is done
+twice, something done aside.
 """
 
 from __future__ import annotations
@@ -14,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 
 LABELS = (
-    "take", "put", "wash", "peel", "cut", "pour", "stir", "season", "open", "spread", "crack", "taste", "wipe", "serve",
+    "take", "wash", "peel", "cut", "put", "open", "pour", "stir", "season", "taste", "wipe", "serve",
     "hand over", "receive",
 )  # fmt: skip
 
@@ -42,89 +49,94 @@ class Item:
     work: tuple[Step, ...]
 
 
-def _item(name: str, home: str, *work: str) -> Item:
-    steps = (step.split(" at ") for step in work)
-    return Item(name, home, tuple(Step(label, place) for label, place in steps))
+def _washed(name: str, home: str, end: str) -> Item:
+    return Item(name, home, (Step("wash", "sink"), Step("cut", "board"), Step("put", end)))
+
+
+def _peeled(name: str, home: str, end: str) -> Item:
+    return Item(name, home, (Step("peel", "board"), Step("cut", "board"), Step("put", end)))
+
+
+def _poured(name: str, home: str, end: str) -> Item:
+    return Item(name, home, (Step("open", "board"), Step("pour", end), Step("stir", end)))
 
 
 ITEMS = (
-    _item("tomato", "basket", "cut at board", "put at bowl"),
-    _item("onion", "basket", "peel at board", "cut at board", "put at stove"),
-    _item("egg", "fridge top", "crack at bowl", "stir at bowl"),
-    _item("milk", "fridge top", "open at board", "pour at bowl", "stir at bowl"),
-    _item("cucumber", "fridge bottom", "wash at sink", "peel at board", "cut at board", "put at bowl"),
-    _item("cheese", "fridge bottom", "open at board", "cut at board", "put at plate"),
-    _item("carrot", "drawer", "wash at sink", "cut at board", "put at stove"),
-    _item("potato", "drawer", "peel at board", "wash at sink", "cut at board", "put at stove"),
-    _item("bread", "cupboard", "cut at board", "spread at board", "put at plate"),
-    _item("pasta", "cupboard", "open at board", "pour at stove", "stir at stove"),
-    _item("tea", "shelf", "open at board", "pour at plate", "stir at plate"),
-    _item("herbs", "shelf", "wash at sink", "cut at board", "season at stove"),
-)
+    _washed("tomato", "basket", "bowl"), _washed("mushroom", "basket", "stove"),
+    _washed("lettuce", "fridge top", "plate"), _washed("herbs", "fridge top", "stove"),
+    _peeled("carrot", "drawer", "stove"), _peeled("potato", "cupboard", "plate"),
+    _peeled("cucumber", "fridge bottom", "bowl"), _peeled("onion", "shelf", "stove"),
+    _poured("pasta", "drawer", "plate"), _poured("flour", "cupboard", "bowl"),
+    _poured("milk", "fridge bottom", "stove"), _poured("tea", "shelf", "bowl"),
+)  # fmt: skip
 
 OBJECTS = tuple(item.name for item in ITEMS)
 
-THERE = 0.75
+DISHES = (
+    ("tomato", "carrot", "flour", "lettuce", "cucumber"), ("mushroom", "onion", "milk", "pasta", "herbs"),
+    ("potato", "herbs", "tea", "onion", "pasta"), ("cucumber", "lettuce", "pasta", "tomato", "mushroom"),
+    ("milk", "tomato", "onion", "tea", "herbs"), ("flour", "mushroom", "potato", "carrot", "cucumber"),
+    ("pasta", "carrot", "lettuce", "potato", "milk"), ("tea", "cucumber", "mushroom", "herbs", "flour"),
+)  # fmt: skip
+"""Each with its twin: washed or peeled or poured in the same order for three items, then not."""
+
+THERE = 0.85
 """Share of the items that a kitchen has; an item that is not there is never taken."""
 
-MOST_AT_ONCE = 4
-"""Items laid out in a round, at most."""
+FEWEST = 4
+"""A dish of which fewer items are there is not cooked."""
 
-IN_ORDER = 0.85
-"""Share of rounds that work in the order of taking; the others start with what was taken last."""
+AT_ONCE = (1, 2, 3)
+"""Items that a cook fetches at once."""
 
-AGAIN = 0.15
+AGAIN = 0.06
 """Probability that an action of the work is done once more: how long it takes cannot be known."""
 
 ASIDE = {"taste": "stove", "wipe": "board"}
-ASIDE_SHARE = 0.12
-"""What a cook does now and then between two items."""
+ASIDE_SHARE = 0.05
+"""What a cook does now and then after an item."""
 
-ENDINGS = (
-    (Step("season", "bowl"), Step("stir", "bowl"), Step("serve", "plate")),
-    (Step("season", "stove"), Step("stir", "stove"), Step("taste", "stove"), Step("serve", "plate")),
-    (Step("serve", "plate"), Step("wipe", "board")),
-)
-"""Of a round: after work that ended at the bowl, at the stove, elsewhere."""
+ENDING = ("season", "stir", "serve")
+"""What ends a dish, where its last item ended; served at the plate."""
 
 SHORTEST, LONGEST = 28, 42
 """Steps of a sequence."""
 
 
 def draw_objects(random: np.random.Generator) -> np.ndarray:
-    """Which items a kitchen has, ``(12,)`` bool; never fewer than six."""
+    """Which items a kitchen has, ``(12,)`` bool; enough for a dish and its twin at least."""
     while True:
         there = random.random(len(ITEMS)) < THERE
-        if there.sum() >= 6:
+        if len(feasible(there)) >= 2:
             return there
 
 
+def feasible(objects: np.ndarray) -> list[list[Item]]:
+    """The dishes that can be cooked, each as its items that are there."""
+    there = {item.name: item for item, known in zip(ITEMS, objects, strict=True) if known}
+    found = [[there[name] for name in dish if name in there] for dish in DISHES]
+    return [items for items in found if len(items) >= FEWEST]
+
+
 def draw_steps(objects: np.ndarray, random: np.random.Generator) -> list[Step]:
-    """What one cook does, from the first to the last step.
+    """What one cook does; a sequence begins and ends anywhere in a dish.
 
     Args:
         objects: Which items there are, ``(12,)`` bool.
         random: Source of chance.
     """
+    dishes, at_once = feasible(objects), int(random.choice(AT_ONCE))
+    begin, length = int(random.integers(10)), int(random.integers(SHORTEST, LONGEST + 1))
     steps: list[Step] = []
-    left: list[Item] = []
-    length = int(random.integers(SHORTEST, LONGEST + 1))
-    while len(steps) < length:
-        if not left:  # the next dish begins with a full kitchen again
-            left = shuffled([item for item, there in zip(ITEMS, objects, strict=True) if there], random)
-        count = min(int(random.integers(1, MOST_AT_ONCE + 1)), len(left))
-        chosen, left = left[:count], left[count:]
-        steps += [Step("take", item.home) for item in chosen]
-        for item in chosen if random.random() < IN_ORDER else chosen[::-1]:
-            steps += work_on(item, random)
-        if random.random() < 0.7:
-            steps += ending(steps[-1].place)
-    return steps[:length]
-
-
-def shuffled(items: list[Item], random: np.random.Generator) -> list[Item]:
-    """The items in a random order."""
-    return [items[index] for index in random.permutation(len(items))]
+    while len(steps) < begin + length:
+        items = dishes[random.integers(len(dishes))]
+        for first in range(0, len(items), at_once):
+            chosen = items[first : first + at_once]
+            steps += [Step("take", item.home) for item in chosen]
+            for item in chosen:
+                steps += work_on(item, random)
+        steps += [Step(label, "plate" if label == "serve" else items[-1].work[-1].place) for label in ENDING]
+    return steps[begin : begin + length]
 
 
 def work_on(item: Item, random: np.random.Generator) -> list[Step]:
@@ -138,11 +150,6 @@ def work_on(item: Item, random: np.random.Generator) -> list[Step]:
     return steps
 
 
-def ending(place: str) -> tuple[Step, ...]:
-    """How a round ends whose last work was at a place."""
-    return ENDINGS[0 if place == "bowl" else 1 if place == "stove" else 2]
-
-
 def draw_pair(objects: np.ndarray, random: np.random.Generator) -> tuple[list[Step], list[Step]]:
     """What two cooks do, step by step at the same time: one fetches and hands over, the other works.
 
@@ -152,16 +159,13 @@ def draw_pair(objects: np.ndarray, random: np.random.Generator) -> tuple[list[St
         objects: Which items there are, ``(12,)`` bool.
         random: Source of chance.
     """
+    dishes = feasible(objects)
+    begin, length = int(random.integers(10)), int(random.integers(SHORTEST, LONGEST + 1))
     fetching: list[Step] = []
     working: list[Step] = []
-    left: list[Item] = []
-    length = int(random.integers(SHORTEST, LONGEST + 1))
-    while len(fetching) < length:
-        if not left:
-            left = shuffled([item for item, there in zip(ITEMS, objects, strict=True) if there], random)
-        item = left.pop()
-        work = work_on(item, random)
-        pause = Step("wipe", "board") if random.random() < 0.5 else Step("stir", "stove")
-        fetching += [Step("take", item.home), Step("hand over", "side"), *[pause] * len(work)]
-        working += [Step("wipe", "board"), Step("receive", "side"), *work]
-    return fetching[:length], working[:length]
+    while len(fetching) < begin + length:
+        for item in dishes[random.integers(len(dishes))]:
+            work = work_on(item, random)
+            fetching += [Step("take", item.home), Step("hand over", "side"), *[Step("wipe", "board")] * len(work)]
+            working += [Step("wipe", "board"), Step("receive", "side"), *work]
+    return fetching[begin : begin + length], working[begin : begin + length]

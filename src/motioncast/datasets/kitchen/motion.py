@@ -22,22 +22,20 @@ TARGETS = np.array([
 """Where the places of ``PLACES`` are, metres from the cook."""
 
 RIGHT_HAND = {
-    "take": (0, 0, 0), "put": (-0.02, -0.04, 0.06), "wash": (0, -0.05, 0), "peel": (-0.03, -0.08, 0.09),
+    "take": (0, 0, 0), "put": (-0.02, -0.04, 0.06), "wash": (0, -0.05, 0), "peel": (-0.03, -0.08, 0.10),
     "cut": (0, -0.06, 0.05), "pour": (0, -0.03, 0.20), "stir": (0, 0, 0.10), "season": (0.02, 0, 0.26),
-    "open": (-0.06, -0.05, 0.12), "spread": (-0.02, -0.04, 0.03), "crack": (-0.02, -0.06, 0.12),
-    "taste": (-0.25, 0.15, 0.45), "wipe": (0.06, -0.12, -0.02), "serve": (0.04, -0.10, 0.04),
-    "hand over": (0.05, 0, 0), "receive": (0, 0, 0),
+    "open": (-0.04, -0.07, 0.12), "taste": (-0.25, 0.15, 0.45), "wipe": (0.06, -0.12, -0.02),
+    "serve": (0.04, -0.10, 0.04), "hand over": (0.05, 0, 0), "receive": (0, 0, 0),
 }  # fmt: skip
 LEFT_HAND = {
-    "wash": (0, 0.05, 0), "peel": (-0.05, 0.07, 0.09), "cut": (0, 0.10, 0.03), "open": (-0.06, 0.05, 0.08),
-    "spread": (-0.02, 0.10, 0.03), "crack": (-0.02, 0.06, 0.12), "serve": (0.04, 0.10, 0.04),
-    "put": (-0.04, 0.14, 0.02),
+    "wash": (0, 0.05, 0), "peel": (-0.05, 0.07, 0.09), "cut": (0, 0.10, 0.03), "open": (-0.06, 0.06, 0.08),
+    "serve": (0.04, 0.10, 0.04), "put": (-0.04, 0.14, 0.02),
 }  # fmt: skip
 """Where hands are from the place, in the direction that the trunk faces; a left hand that is not named rests."""
 
 SWING = {
     "wash": (0, 0.05, 0), "peel": (0.08, 0, 0), "cut": (0, 0, 0.05), "stir": (0.06, 0.06, 0), "season": (0, 0.04, 0),
-    "spread": (0.03, 0.09, 0), "wipe": (0.05, 0.18, 0), "pour": (0, 0, 0.05),
+    "wipe": (0.05, 0.18, 0), "pour": (0, 0, 0.05),
 }  # fmt: skip
 """How far the right hand swings while it works."""
 

@@ -1,10 +1,10 @@
 """The tables of Characteristic 3D Poses on open data; writes docs/leaderboard/cmu-goals.md and result files.
 
-    python benchmarks/goals_table.py --data DIR --baselines FOLDER [--models FOLDER …] [--cache FOLDER]
+    python benchmarks/goals_table.py --data DIR --baselines FOLDER [--models FOLDER …] [--vary] [--cache FOLDER]
 
-Trained baselines are read from their folder, or trained and kept there (minutes each on one core). Every model of goals
-that ships and every graph of the folders of runs is asked as a user would ask it. With a cache, answers that are known
-are not asked for again.
+Trained baselines are read from their folder, or trained and kept there (minutes each on one core). Every model that
+ships and every graph of the folders of runs is asked as a user would ask it; with --vary the former also unrefined,
+by temperature and for 50 poses. With a cache, answers that are known are not asked for again.
 """
 
 from __future__ import annotations
@@ -68,6 +68,7 @@ def main() -> None:
     parser.add_argument("--data", type=Path, required=True, help="folder with the open motion data")
     parser.add_argument("--baselines", type=Path, required=True, help="folder of the trained baselines")
     parser.add_argument("--models", type=Path, nargs="*", default=[], help="folders with further graphs and cards")
+    parser.add_argument("--vary", action="store_true", help="also ask the models that ship otherwise")
     parser.add_argument("--cache", type=Path, help="folder where answers are kept")
     asked = parser.parse_args()
     asked.baselines.mkdir(parents=True, exist_ok=True)
@@ -99,11 +100,11 @@ def main() -> None:
         if hasattr(model, "goals_at"):
             told[f"{name}, told the frame"] = rows(trained(name, model), answer(model, test, told=True), save=False)
     ablations: Table = {}
-    for model in models([]):
+    for model in [load(card.name) for card in list_models() if card.task == "goals"]:
         overall[model.card.name] = rows(model.card, kept(model, test, GOALS, asked.cache))
         ablations[model.card.name] = overall[model.card.name]
-        ablations |= varied(model, test, asked.cache, rows)
-    for model in models(asked.models)[len(models([])) :]:
+        ablations |= varied(model, test, asked.cache, rows) if asked.vary else {}
+    for model in runs(asked.models):
         ablations[model.card.name] = rows(model.card, kept(model, test, GOALS, asked.cache), save=False)
     with atomic_write(PAGE) as temporary:
         temporary.write_text(page(overall, told, ablations, test, train, judge), encoding="utf-8")
@@ -116,16 +117,15 @@ def rule(name: str) -> ModelCard:
 
 def trained(name: str, model: Any) -> ModelCard:
     numbers = sum(parameter.numel() for parameter in model.parameters())
-    return replace(rule(name), system=name, parameters=numbers)
+    return replace(rule(name), system=name, parameters=numbers, training={"seed": 0, "steps": BASELINES[name][2]})
 
 
-def models(folders: Sequence[Path]) -> list[Any]:
-    """The models of goals that ship, and the graphs of runs."""
-    shipped = [load(card.name) for card in list_models() if card.task == "goals"]
+def runs(folders: Sequence[Path]) -> list[Any]:
+    """The graphs of goals in folders of runs."""
     paths = [
         path for folder in folders for path in sorted(folder.glob("*.onnx")) if path.with_suffix(".json").is_file()
     ]
-    return [*shipped, *(model for model in map(load, paths) if model.card.task == "goals")]
+    return [model for model in map(load, paths) if model.card.task == "goals"]
 
 
 def varied(
@@ -205,11 +205,12 @@ with the paper's, which are of other people and other actions.
 The error of the best of {GOALS} is what the paper prints: the truth chooses. That of the most likely pose chooses
 nothing. A model with one pose has the same error in both senses and no diversity. `nearest-neighbours` answers with the
 poses that the ten most similar training histories led to. Diversity is the mean distance of two of the ten poses;
-weighted, elbows and wrists count twice, as most likely in the paper. The inception score is conditional (over the ten
-poses of one question); its classifier tells the coarse kinds of takes ({", ".join(judge.kinds)}) from one pose,
-right in {100 * judge.accuracy(test.targets, test.kinds):.0f} % of the true test poses, where always the most frequent
-kind would be right in {100 * common:.0f} %. Random voxels show what it is worth: a pose that nobody can take scores,
-too.
+weighted, elbows and wrists count twice, as most likely in the paper.
+
+The inception score is conditional: over the ten poses of one question. Its classifier tells the coarse kinds of takes
+({", ".join(judge.kinds)}) from one pose, right in {100 * judge.accuracy(test.targets, test.kinds):.0f} %
+of the true test poses, where always the most frequent kind would be right in {100 * common:.0f} %. Random voxels show
+what it is worth: poses that nobody can take score, too.
 
 {markdown(overall, OVERALL)}
 The trajectory models answer with the pose in the frame that a head picks out of 100; told the true frame instead (Table

@@ -19,6 +19,11 @@ ROOT = Path(__file__).parents[1]
 FOLDER = ROOT / "docs" / "leaderboard"
 MARKS = re.compile(r"(<!-- figures: begin [^\n]*-->\n).*?(<!-- figures: end -->)", re.DOTALL)
 IN_README = ("cmu-duet", "cmu-crowd")
+ELSEWHERE = {
+    "rooms": ("ten seconds among furniture", "rooms_table.py"),
+    "cmu-goals": ("ten characteristic poses, without a time", "goals_table.py"),
+}
+"""Boards that other programs write: what they are of, and which."""
 
 
 def main() -> None:
@@ -73,8 +78,9 @@ def index(boards: list[Leaderboard]) -> str:
             f"| [{board.benchmark}]({board.benchmark}.md) | {board.setting['windows']} | `{best.model}` | "
             f"{best.value:.3f} | {interval} |"
         )
-    if (FOLDER / "rooms.md").is_file():
-        lines += ["", "[rooms](rooms.md): ten seconds among furniture, written by benchmarks/rooms_table.py."]
+    for name, (what, script) in ELSEWHERE.items():
+        if (FOLDER / f"{name}.md").is_file():
+            lines += ["", f"[{name}]({name}.md): {what}, written by benchmarks/{script}."]
     return "\n".join([*lines, ""])
 
 

@@ -36,7 +36,7 @@ BATCH, LEARNING_RATE, CHECK_EVERY = 32, 1e-3, 100
 BASELINES: dict[str, tuple[str, dict[str, Any], int]] = {
     "deterministic head": ("goal_head", {}, 600),
     "LTD": ("goal_trajectory", {"system": "ltd"}, 1000),
-    "HRI": ("goal_trajectory", {"system": "hisrep"}, 200),
+    "HRI": ("goal_trajectory", {"system": "hisrep"}, 800),
     "DLow": ("dlow", {}, 600),
 }
 """Name -> model file, sizes and steps; DLow's autoencoder and its maps take as many each."""

@@ -29,6 +29,8 @@ class GoalsProtocol:
         history: Frames of history.
         starts: Where the histories begin, as shares of the way from the moment before.
         goals: Poses asked for.
+        metric: What the ratio is of.
+        windows: Which questions, in words.
         centring: What poses are compared around.
         seed: Seed of the first question; each has its own.
     """
@@ -39,6 +41,8 @@ class GoalsProtocol:
     history: int = HISTORY
     starts: tuple[float, ...] = STARTS
     goals: int = GOALS
+    metric: str = "mpjpe"
+    windows: str = "five histories on the way to each characteristic pose, the best of ten poses or the only one"
     centring: str = "each pose around its own hip"
     seed: int = 0
 

@@ -13,7 +13,7 @@ from motioncast.core.goal_poses import GoalPoses
 from motioncast.core.scene import Scene
 from motioncast.core.skeletons import H36M17
 
-TOGETHER = 20
+TOGETHER = 10
 """Questions that are asked at once, as people of one scene who have nothing to do with one another."""
 
 

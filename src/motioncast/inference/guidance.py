@@ -7,13 +7,14 @@ and the seam with the past hardly change, and never far.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from motioncast.core.scene_object import SceneObject
 from motioncast.core.skeleton import Skeleton
-from motioncast.metrics.furniture import Legs, joint_depth, sits
+from motioncast.core.solids import Solids
+from motioncast.metrics.furniture import Legs, sits
 
 CLEAR_M = 0.01
 """What is left between a joint and a thing."""
@@ -32,6 +33,9 @@ ROUNDS = 6
 
 REACH_M = 1.3
 """No joint is farther from the pelvis, over the ground."""
+
+EVERY, INSIDE = 5, 20.0
+"""To choose a way, every fifth frame is looked at, and to be a centimetre inside things counts as 20 cm of way."""
 
 
 def kept_clear(
@@ -60,10 +64,10 @@ def kept_clear(
     legs, ease = Legs.of(skeleton), round(EASE_S * fps)
     sitters = sits(future.swapaxes(0, 1), legs, fps, floor_m).sum(-1) > ease
     clear = apart(history, future.astype(np.float64), sitters, legs, ease)
-    solid = [thing for thing in objects if thing.shape in ("box", "cylinder")]
+    everything = Solids.of(objects)
+    no_seats = Solids.of([thing for thing in objects if thing.category != "sittable"])
     for person, sitter in enumerate(sitters):
-        firm = [thing for thing in solid if not (sitter and thing.category == "sittable")]
-        clear[:, person] = out_of_things(clear[:, person], firm, legs, ease)
+        clear[:, person] = out_of_things(clear[:, person], no_seats if sitter else everything, legs, ease)
     return clear.astype(future.dtype)
 
 
@@ -111,59 +115,48 @@ def ways_apart(between: np.ndarray, frames: slice, distance: float) -> list[tupl
     return found
 
 
-def out_of_things(body: np.ndarray, things: Sequence[SceneObject], legs: Legs, ease: int) -> np.ndarray:
+def out_of_things(body: np.ndarray, things: Solids, legs: Legs, ease: int) -> np.ndarray:
     """One person's future ``(time, joints, 3)``, moved out of each thing on the side where least is in the way."""
-    path = pelvis(body, legs)
-    near = [
-        thing
-        for thing in things
-        if np.linalg.norm(path - thing.position[:2], axis=-1).min() < np.linalg.norm(thing.size[:2]) / 2 + REACH_M
-    ]
+    near = things.near(pelvis(body, legs), REACH_M)
     for _ in range(ROUNDS):
-        inside = [(thing, depth) for thing in near if (depth := joint_depth([thing], body).max(-1)).any()]
-        if not inside:
-            return body
-        thing, depth = max(inside, key=lambda pair: float(pair[1].sum()))
-        frames = max(stays(depth > 0, ease), key=lambda stay: float(depth[stay].sum()))
-        ways = [gradual(need, frames, ease)[:, None] * along for along, need in ways_out(thing, body)]
-        moved = [body + way[:, None] for way in ways if np.abs(way).max() <= FARTHEST_M]
-        if not moved:
-            return body
-        body = min(moved, key=cost_of(near, body))
+        depth = near.depth(body)
+        if not depth.any():
+            break
+        deepest = int(depth.sum(1).argmax())
+        frames = max(stays(depth[deepest] > 0, ease), key=lambda stay: float(depth[deepest, stay].sum()))
+        found = [
+            gradual(need, frames, ease)[:, None] * along for along, need in ways_out(near[deepest : deepest + 1], body)
+        ]
+        ways = np.array([way for way in found if np.abs(way).max() <= FARTHEST_M])
+        if not len(ways):
+            break
+        moved = body + ways[:, :, None]
+        inside = near.depth(moved[:, ::EVERY]).max(0).mean(-1)
+        body = moved[(np.abs(ways).max((1, 2)) + INSIDE * inside).argmin()]
     return body
 
 
-def cost_of(things: Sequence[SceneObject], body: np.ndarray) -> Callable[[np.ndarray], float]:
-    """What counts against a way aside: how far it leads, and how deep into things."""
-
-    def cost(moved: np.ndarray) -> float:
-        return float(np.abs(moved - body).max() + 20 * joint_depth(things, moved).max(-1).mean())
-
-    return cost
-
-
-def ways_out(thing: SceneObject, body: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
-    """The four ways out of a box or a cylinder: a horizontal direction ``(3,)``, and how far in each frame ``(time,)``.
+def ways_out(thing: Solids, body: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """The four ways out of one thing: a horizontal direction ``(3,)``, and how far in each frame ``(time,)``.
 
     Example:
-        >>> table = SceneObject("table", "table", "box", (2, 1, 1), (0, 0, 0.5))
-        >>> [(along.tolist(), need.round(2).tolist()) for along, need in ways_out(table, np.array([[[0.9, 0, 0.5]]]))]
-        ... # doctest: +NORMALIZE_WHITESPACE
-        [([1.0, 0.0, 0.0], [0.11]), ([-1.0, 0.0, 0.0], [1.91]), ([0.0, 1.0, 0.0], [0.51]), ([0.0, -1.0, 0.0], [0.51])]
+        >>> table = Solids.of([SceneObject("table", "table", "box", (2, 1, 1), (0, 0, 0.5))])
+        >>> ways = ways_out(table, np.array([[[0.9, 0, 0.5]]]))
+        >>> [(along[:2].round(2).tolist(), need.round(2).tolist()) for along, need in ways]
+        [([1.0, 0.0], [0.11]), ([-1.0, -0.0], [1.91]), ([0.0, 1.0], [0.51]), ([-0.0, -1.0], [0.51])]
     """
-    own, half = thing.inward(body).astype(np.float64), thing.size / 2 + CLEAR_M
+    own, half = thing.inward(body)[0], thing.halves[0] + CLEAR_M
     found = []
     for axis, across in ((0, 1), (1, 0)):
         aside = np.abs(own[..., across])
         level = (aside < half[across]) & (np.abs(own[..., 2]) < half[2])
-        deep = np.sqrt(np.maximum(half[0] ** 2 - aside**2, 0)) if thing.shape == "cylinder" else half[axis]
+        deep = np.sqrt(np.maximum(half[0] ** 2 - aside**2, 0)) if thing.round[0] else half[axis]
         for sign in (1.0, -1.0):
             place, need = sign * own[..., axis], np.zeros(len(body))
             for _ in range(3):  # who is moved out may bring another joint in
-                within_it = level & (np.abs(place + need[:, None]) < deep)
-                need = np.where(within_it, deep - place, need[:, None]).max(-1)
-            along = thing.outward(sign * np.eye(3, dtype=np.float32)[axis]) - thing.position
-            found.append((along * [1, 1, 0], need))
+                touches = level & (np.abs(place + need[:, None]) < deep)
+                need = np.where(touches, deep - place, need[:, None]).max(-1)
+            found.append((sign * thing.axes[0, :, axis] * [1, 1, 0], need))
     return found
 
 

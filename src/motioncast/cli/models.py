@@ -26,8 +26,8 @@ def models(*, json: bool = False) -> None:
                 card.name,
                 card.system,
                 card.skeleton,
-                f"{card.history} at {card.fps:g} fps",
-                f"{card.horizon / card.fps:.1f} s",
+                f"{card.history} steps" if card.task == "actions" else f"{card.history} at {card.fps:g} fps",
+                f"{card.horizon} steps" if card.task == "actions" else f"{card.horizon / card.fps:.1f} s",
                 card.people,
                 f"{card.parameters:,}" if card.parameters else "none",
             )

@@ -92,20 +92,23 @@ def top_k(scores: np.ndarray, truth: np.ndarray, k: int = 1) -> np.ndarray:
 def looks_real(poses: np.ndarray, weights: Sequence[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
     """Whether a classifier takes poses for real, ``(...)`` bool; the share of them is the quality of FutureHuman3D.
 
-    Poses are read from the neck, in shoulder widths.
-
     Args:
         poses: ``(..., 9, 3)``.
         weights: Matrix ``(in, out)`` and bias of each layer, with ReLUs between; the last gives one score, above 0 for
             real.
     """
-    centred = from_neck(np.asarray(poses, np.float64))
-    across = centred[..., UPPER9.index("left_shoulder"), :] - centred[..., UPPER9.index("right_shoulder"), :]
-    wide = np.maximum(np.linalg.norm(across, axis=-1), 1e-3)[..., None, None]
-    features = (centred / wide).reshape(*poses.shape[:-2], -1)
+    features = in_shoulder_widths(poses)
     for number, (matrix, bias) in enumerate(weights):
         features = (np.maximum(features, 0) if number else features) @ matrix + bias
     return features[..., 0] > 0
+
+
+def in_shoulder_widths(poses: np.ndarray) -> np.ndarray:
+    """What the classifier sees of poses ``(..., 9, 3)``: joints from the neck in shoulder widths, ``(..., 27)``."""
+    centred = from_neck(np.asarray(poses, np.float64))
+    across = centred[..., UPPER9.index("left_shoulder"), :] - centred[..., UPPER9.index("right_shoulder"), :]
+    wide = np.maximum(np.linalg.norm(across, axis=-1), 1e-3)[..., None, None]
+    return (centred / wide).reshape(*poses.shape[:-2], -1)
 
 
 def _mean_distance(apart: np.ndarray, seen: np.ndarray | None) -> np.ndarray:

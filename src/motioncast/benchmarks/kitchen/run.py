@@ -43,7 +43,7 @@ class KitchenProtocol:
     @property
     def name(self) -> str:
         """Name of the benchmark."""
-        return "kitchen-pair" if self.people == 2 else "kitchen"
+        return "kitchen" + "-pair" * (self.people == 2) + f"-{self.moments}" * (self.moments != "characteristic")
 
 
 def windows_of(protocol: KitchenProtocol, count: int = SEQUENCES) -> ActionWindows:

@@ -6,6 +6,8 @@ import { Lines } from "./skeleton";
 import type { Theme } from "./theme";
 import { Track } from "./track";
 
+const FAINT = 0.05; // a goal that is less probable has no number
+
 const HANDS = [new Color(0xd9482b), new Color(0x2b6fd9)]; // right, left
 
 export class Goals extends Object3D {
@@ -29,7 +31,11 @@ export class Goals extends Object3D {
     heat?.values.forEach((weight, point) => tints.set([...HANDS[hand!.values[point]].toArray(), 0.06 + 0.5 * weight], point * 4));
     geometry.setAttribute("position", new BufferAttribute(places?.values ?? new Float32Array(), 3));
     geometry.setAttribute("color", new BufferAttribute(tints, 4));
-    const material = new PointsMaterial({ size: 0.07, vertexColors: true, transparent: true, depthWrite: false });
+    const material = new PointsMaterial({ size: 0.1, vertexColors: true, transparent: true, depthWrite: false });
+    material.onBeforeCompile = (shader) => { // soft balls instead of squares
+      const soft = "#include <color_fragment>\ndiffuseColor.a *= smoothstep(0.5, 0.1, length(gl_PointCoord - 0.5));";
+      shader.fragmentShader = shader.fragmentShader.replace("#include <color_fragment>", soft);
+    };
     this.cloud = new Points(geometry, material);
     this.cloud.frustumCulled = false;
     this.cloud.renderOrder = 2;
@@ -53,7 +59,8 @@ export class Goals extends Object3D {
   /** Where each goal's probability is written: at the hand, foot or head of the first person that has farthest to go. */
   places(): (Vector3 | null)[] {
     const spot = (track: Track, joint: number) => new Vector3().fromArray(track.current, joint * 3);
-    return this.ends.map((end) => {
+    return this.ends.map((end, goal) => {
+      if (this.page.about.weights[goal] < FAINT) return null;
       const seen = this.page.about.skeleton.ends.filter((joint) => end.sees(0, joint) && this.stood.sees(0, joint));
       const way = (joint: number) => spot(end, joint).distanceTo(spot(this.stood, joint));
       const farthest = seen.sort((one, other) => way(other) - way(one))[0];

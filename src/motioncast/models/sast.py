@@ -340,8 +340,6 @@ class SAST(nn.Module):
             ``(B, Q, G, scene_width)``.
         """
         seers = codes.shape[1]
-        if not self.config.scene:
-            return codes.new_zeros(*codes.shape[:3], self.config.scene_width)
         memory = self.scene.encode(codes.flatten(0, 1), for_each(there, seers))
         return memory.view(-1, seers, codes.shape[2], self.config.scene_width)
 

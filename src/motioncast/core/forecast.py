@@ -31,9 +31,9 @@ class Forecast:
             truth in that share of cases. Empty where the model states none.
         carried: ``(joints,)`` bool: joints that the model does not know and that were carried along rigidly.
         guessed: ``(people,)`` bool: people for whom a simple guess stands in, since their history is too short.
-        goals: Of futures that each end in a goal: those goals, in the order of the samples.
         seed: Seed of the samples.
         warnings: What the user should know, one sentence each.
+        goals: Of futures that each end in a goal: those goals, in the order of the samples.
     """
 
     samples: np.ndarray
@@ -44,9 +44,9 @@ class Forecast:
     radius_m: Mapping[str, np.ndarray] = field(default_factory=dict)
     carried: np.ndarray = None  # pyright: ignore[reportAssignmentType]  # filled on construction
     guessed: np.ndarray = None  # pyright: ignore[reportAssignmentType]  # filled on construction
-    goals: GoalPoses | None = None
     seed: int = 0
     warnings: tuple[str, ...] = ()
+    goals: GoalPoses | None = None
 
     def __post_init__(self) -> None:
         samples = np.asarray(self.samples, np.float32)

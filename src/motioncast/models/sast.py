@@ -135,7 +135,7 @@ PRESETS: dict[str, SASTConfig] = {
         scene_layers=2,
         conv_dropout=0.0,
         shift=-3.0,
-    ),  # fmt: skip
+    ),
     "release": SASTConfig(preset="release", skeleton="hik29", horizon=279, conv_dropout=0.2),
     "paper": SASTConfig(preset="paper", skeleton="hik29", horizon=279, conv_dropout=0.2),
 }

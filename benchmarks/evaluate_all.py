@@ -31,7 +31,7 @@ def main() -> None:
     parser.add_argument("--only", default="*", help="pattern of model names")
     parser.add_argument("--benchmarks", default="*", help="pattern of benchmark names")
     asked = parser.parse_args()
-    shipped = [load(card.name) for card in list_models()]
+    shipped = [load(card.name) for card in list_models("forecast")]
     models = shipped + [load(path) for folder in asked.models for path in sorted(folder.glob("*.onnx"))]
     for benchmark, (protocol, _) in BENCHMARKS.items():
         if benchmark == "somof" or not fnmatch(benchmark, asked.benchmarks):  # SoMoF's data is not open

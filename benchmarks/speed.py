@@ -42,7 +42,7 @@ def interleaved(runs: dict[str, Callable[[], object]], rounds: int) -> dict[str,
 def graphs(people: int) -> dict[str, Callable[[], object]]:
     """A pass of each shipped model: its graph, and where torch is installed the same sizes in torch."""
     runs: dict[str, Callable[[], object]] = {}
-    for card in list_models():
+    for card in list_models("forecast"):
         if not card.parameters or card.diffusion:  # a diffusion is timed as a whole: motioncast time
             continue
         forecaster = load(card.name)
@@ -132,7 +132,7 @@ def board(folders: list[Path], rounds: int) -> None:
     import onnxruntime
 
     people, runs = 3, {}
-    models = [load(card.name) for card in list_models() if card.parameters and not card.diffusion]
+    models = [load(card.name) for card in list_models("forecast") if card.parameters and not card.diffusion]
     models += [load(path) for folder in folders for path in sorted(folder.glob("*.onnx"))]
     for model in models:
         assert isinstance(model, GraphForecaster)

@@ -7,6 +7,7 @@ import motioncast
 NAMES = [
     "Forecast",
     "FormatError",
+    "GoalPoses",
     "InputError",
     "ModelCard",
     "MotioncastError",
@@ -16,8 +17,10 @@ NAMES = [
     "list_models",
     "load",
     "load_forecast",
+    "load_goals",
     "load_scene",
     "save_forecast",
+    "save_goals",
     "save_scene",
     "write_page",
 ]

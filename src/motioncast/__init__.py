@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from motioncast.core.card import ModelCard as ModelCard
     from motioncast.core.forecast import Forecast as Forecast
+    from motioncast.core.goal_poses import GoalPoses as GoalPoses
     from motioncast.core.scene import Scene as Scene
     from motioncast.core.scene import join as join
     from motioncast.core.skeleton import Skeleton as Skeleton
@@ -23,8 +24,10 @@ if TYPE_CHECKING:
     from motioncast.errors import InputError as InputError
     from motioncast.errors import MotioncastError as MotioncastError
     from motioncast.formats.load import load_forecast as load_forecast
+    from motioncast.formats.load import load_goals as load_goals
     from motioncast.formats.load import load_scene as load_scene
     from motioncast.formats.load import save_forecast as save_forecast
+    from motioncast.formats.load import save_goals as save_goals
     from motioncast.formats.load import save_scene as save_scene
     from motioncast.inference.registry import list_models as list_models
     from motioncast.inference.registry import load as load
@@ -35,6 +38,7 @@ __version__ = "0.1.0"
 _PLACES = {
     "Forecast": "core.forecast",
     "FormatError": "errors",
+    "GoalPoses": "core.goal_poses",
     "InputError": "errors",
     "ModelCard": "core.card",
     "MotioncastError": "errors",
@@ -44,8 +48,10 @@ _PLACES = {
     "list_models": "inference.registry",
     "load": "inference.registry",
     "load_forecast": "formats.load",
+    "load_goals": "formats.load",
     "load_scene": "formats.load",
     "save_forecast": "formats.load",
+    "save_goals": "formats.load",
     "save_scene": "formats.load",
     "write_page": "view.page",
 }

@@ -18,7 +18,7 @@ from motioncast.benchmarks.run import forecast_windows
 from motioncast.core.forecaster import Forecaster
 from motioncast.datasets.windows import Windows
 from motioncast.errors import InputError
-from motioncast.inference.registry import load
+from motioncast.inference.registry import load_forecaster
 from motioncast.metrics.position import joint_errors
 
 LEVELS = ("0.5", "0.9")
@@ -85,7 +85,7 @@ def coverage(model: str, benchmark: str, data: Path) -> dict[str, dict[str, floa
     Raises:
         InputError: If the model states no radii, or its setting is not the benchmark's.
     """
-    forecaster = load(model)
+    forecaster = load_forecaster(model)
     protocol, windows = windows_of(benchmark, data)
     levels = forecaster.card.radius.get("levels")
     if not levels:

@@ -23,7 +23,7 @@ from motioncast.core.scene import Scene
 from motioncast.core.skeletons import SKELETONS
 from motioncast.datasets.windows import COMPOSED, Windows
 from motioncast.errors import InputError
-from motioncast.inference.registry import load
+from motioncast.inference.registry import load_forecaster
 
 
 def evaluate(
@@ -50,7 +50,7 @@ def evaluate(
     Raises:
         InputError: If the data is missing, or the model is of another skeleton.
     """
-    forecaster = load(model) if isinstance(model, str) else model
+    forecaster = load_forecaster(model) if isinstance(model, str) else model
     card = forecaster.card
     if benchmark in (ROOMS.name, HIK.name) and spread is not serially:
         raise InputError(f"{benchmark} is forecast one room after the other; leave --workers and --ray out")

@@ -16,7 +16,7 @@ import numpy as np
 from motioncast.core.forecaster import Forecaster
 from motioncast.core.scene import Scene
 from motioncast.errors import InputError
-from motioncast.inference.registry import load
+from motioncast.inference.registry import load_forecaster
 
 Progress = Callable[[float], None]
 
@@ -101,5 +101,5 @@ def forecast_chunk(model: str | Forecaster, scenes: list[Scene], horizon_s: floa
     return answers
 
 
-_loaded = lru_cache(maxsize=1)(load)
+_loaded = lru_cache(maxsize=1)(load_forecaster)
 """A worker loads a model once."""

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Protocol, cast
 
 from motioncast.core.forecast import Forecast
+from motioncast.core.goal_poses import GoalPoses
 from motioncast.core.room import furnish
 from motioncast.core.scene import Scene, join
 from motioncast.errors import FormatError, InputError, OutputError
@@ -152,6 +153,28 @@ def save_forecast(forecast: Forecast, path: str | Path, truth: Scene | None = No
     if suffix in csv.suffixes:
         return csv.write_forecast(forecast, path)
     return _writer(path, forecast.history)(forecast.scene(), path)
+
+
+def save_goals(goals: GoalPoses, path: str | Path) -> tuple[Path, ...]:
+    """Writes goal poses as an NPZ file, all of them.
+
+    Returns:
+        The file written.
+
+    Raises:
+        OutputError: If the file cannot be written.
+    """
+    return npz.write_goals(goals, path)
+
+
+def load_goals(path: str | Path) -> GoalPoses:
+    """The goal poses in an NPZ file.
+
+    Raises:
+        InputError: If the file is missing.
+        FormatError: If it is damaged or holds something else.
+    """
+    return npz.read_goals(path)
 
 
 def load_forecast(path: str | Path) -> Forecast:

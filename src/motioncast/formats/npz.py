@@ -4,6 +4,7 @@
                             object_N_position and object_N_rotation, and object_N_size or object_N_points and _faces
     motioncast.forecast/1   samples, weights, carried, guessed, radius_LEVEL; the history (and the truth, where it
                             came) as a scene whose arrays have the prefix ``history_`` (``truth_``)
+    motioncast.goals/1      poses, weights, heat_HAND, heat_origin, heat_across, carried, guessed; the history likewise
 
 Metres, seconds, z up. ``numpy.load`` reads them without this package; nothing in them can run code.
 """
@@ -19,6 +20,7 @@ import numpy as np
 
 from motioncast.core.card import ModelCard
 from motioncast.core.forecast import Forecast
+from motioncast.core.goal_poses import GoalPoses
 from motioncast.core.scene import Scene
 from motioncast.core.scene_object import SceneObject
 from motioncast.core.skeleton import Skeleton
@@ -30,6 +32,7 @@ suffixes = (".npz",)
 
 SCENE_SCHEMA = "motioncast.scene/1"
 FORECAST_SCHEMA = "motioncast.forecast/1"
+GOALS_SCHEMA = "motioncast.goals/1"
 
 
 def sniff(head: bytes) -> bool:
@@ -45,7 +48,7 @@ def read(
     fps: float | None = None,
     named: Mapping[str, str] | None = None,
 ) -> Scene:
-    """A scene file; of a forecast file, its history.
+    """A scene file; of a file of a forecast or of goals, its history.
 
     Args:
         path: The file.
@@ -60,8 +63,8 @@ def read(
     """
     if up not in (None, "z") or unit not in (None, "m"):
         raise InputError(f"{path} is a scene file, which is in metres with z up; leave --up and --unit out")
-    arrays, meta = _open(path, (SCENE_SCHEMA, FORECAST_SCHEMA))
-    if meta["schema"] == FORECAST_SCHEMA:
+    arrays, meta = _open(path, (SCENE_SCHEMA, FORECAST_SCHEMA, GOALS_SCHEMA))
+    if meta["schema"] != SCENE_SCHEMA:
         return _scene(path, arrays, _entry(path, meta, "history", dict), "history_", fps, named)
     return _scene(path, arrays, meta, "", fps, named)
 
@@ -143,6 +146,62 @@ def read_truth(path: str | Path) -> Scene | None:
     """
     arrays, meta = _open(path, (FORECAST_SCHEMA,))
     return _scene(path, arrays, _entry(path, meta, "truth", dict), "truth_") if "truth" in meta else None
+
+
+def write_goals(goals: GoalPoses, path: str | Path) -> tuple[Path, ...]:
+    """Writes a file of goal poses.
+
+    Raises:
+        OutputError: If it cannot be written.
+    """
+    arrays, history = _packed(goals.history, "history_")
+    arrays |= {
+        "poses": goals.poses, "weights": np.asarray(goals.weights, np.float32),
+        "heat_origin": np.asarray(goals.heat_origin, np.float32),
+        "heat_across": np.asarray(goals.heat_across, np.float32),
+        "carried": goals.carried, "guessed": goals.guessed,
+        **{f"heat_{hand}": np.asarray(heat, np.float32) for hand, heat in goals.heat.items()},
+    }  # fmt: skip
+    meta: dict[str, Any] = {
+        "schema": GOALS_SCHEMA, "people": list(goals.people), "seed": goals.seed, "warnings": list(goals.warnings),
+        "hands": list(goals.heat), "heat_side_m": goals.heat_side_m, "card": json.loads(goals.card.to_json()),
+        "history": history,
+    }  # fmt: skip
+    _save(path, arrays, meta)
+    return (Path(path),)
+
+
+def read_goals(path: str | Path) -> GoalPoses:
+    """The goal poses of a file of goals.
+
+    Raises:
+        FormatError: If the file is damaged or has another layout.
+    """
+    arrays, meta = _open(path, (GOALS_SCHEMA,))
+    history = _scene(path, arrays, _entry(path, meta, "history", dict), "history_")
+    poses = _array(path, arrays, "poses", (None, None, None, 3), "f")
+    goals, people, joints, _ = poses.shape
+    hands = _strings(path, meta, "hands")
+    try:
+        return GoalPoses(
+            poses,
+            history,
+            tuple(_strings(path, meta, "people")),
+            ModelCard.from_json(json.dumps(_entry(path, meta, "card", dict))),
+            _array(path, arrays, "weights", (goals, people), "f"),
+            {hand: _array(path, arrays, f"heat_{hand}", (people, None, None, None), "f") for hand in hands},
+            _array(path, arrays, "heat_origin", (people, 3), "f"),
+            _array(path, arrays, "heat_across", (people, 2), "f"),
+            _array(path, arrays, "carried", (joints,), "b"),
+            _array(path, arrays, "guessed", (people,), "b"),
+            _entry(path, meta, "heat_side_m", float),
+            _entry(path, meta, "seed", int),
+            tuple(_strings(path, meta, "warnings")),
+        )
+    except FormatError:
+        raise
+    except InputError as error:
+        raise FormatError(path, str(error)) from None
 
 
 # --- scenes as arrays and JSON ------------------------------------------------------------------------------

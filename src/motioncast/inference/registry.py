@@ -8,6 +8,7 @@ import sys
 from collections.abc import Iterator
 from importlib import metadata, resources
 from pathlib import Path
+from typing import Any
 
 from motioncast.core.card import ModelCard
 from motioncast.core.forecaster import LiveForecaster
@@ -20,8 +21,8 @@ GROUP = "motioncast.models"
 """Entry points of this group name functions that return a forecaster."""
 
 
-def load(name: str | Path) -> LiveForecaster:
-    """A model by name or path.
+def load(name: str | Path) -> Any:
+    """A model by name or path; what it answers is its card's ``task``: ``forecast``, ``goals`` or ``actions``.
 
     Args:
         name: A simple guess, a shipped model, a model in the user's folder (``MOTIONCAST_HOME``), a third party's,
@@ -50,6 +51,19 @@ def load(name: str | Path) -> LiveForecaster:
     raise ModelNotFound(f'there is no model "{name}"; {advice} (motioncast models lists all)')
 
 
+def load_forecaster(name: str | Path) -> LiveForecaster:
+    """A model that answers with futures, by name or path.
+
+    Raises:
+        ModelNotFound: If there is none, naming the closest.
+        InputError: If it answers with something else, or its card is missing or damaged.
+    """
+    model = load(name)
+    if model.card.task != "forecast":
+        raise InputError(f'model "{model.card.name}" answers with {model.card.task}, not with futures; take another')
+    return model
+
+
 def at_paper_size(name: str) -> Path:
     """The graph of a model at the size of its paper, whose weights are made up: for timing.
 
@@ -64,12 +78,17 @@ def at_paper_size(name: str) -> Path:
     return path
 
 
-def list_models() -> list[ModelCard]:
-    """The cards of all models that :func:`load` finds by name, the default first."""
+def list_models(task: str | None = None) -> list[ModelCard]:
+    """The cards of all models that :func:`load` finds by name, the default first.
+
+    Args:
+        task: Only those that answer this; ``forecast`` for futures.
+    """
     cards = [_card(path) for _, path in _shipped()]
     cards.sort(key=lambda card: (card.name != DEFAULT_MODEL, card.name))
     guesses = [SimpleGuess(name).card for name in RULES]
-    return [*cards, *(entry.load()().card for entry in metadata.entry_points(group=GROUP)), *guesses]
+    found = [*cards, *(entry.load()().card for entry in metadata.entry_points(group=GROUP)), *guesses]
+    return [card for card in found if task in (None, card.task)]
 
 
 def home() -> Path:
@@ -103,10 +122,13 @@ def _card(weights: Path) -> ModelCard:
     return ModelCard.from_json(path.read_text(encoding="utf-8"))
 
 
-def _graph(weights: Path) -> LiveForecaster:
+def _graph(weights: Path) -> Any:
     # onnxruntime only where a graph is run
+    from motioncast.inference.actions import ActionForecaster
     from motioncast.inference.denoiser import DiffusionForecaster
     from motioncast.inference.session import GraphForecaster
 
     card = _card(weights)
+    if card.task == "actions":
+        return ActionForecaster(card, weights)
     return DiffusionForecaster(card, weights) if card.diffusion else GraphForecaster(card, weights)

@@ -10,7 +10,8 @@ import numpy as np
 from motioncast.cli import say
 from motioncast.cli.comparing import error_curves, error_table, summary
 from motioncast.cli.reading import AS_THE_FILE_SAYS, Reading, frames_needed, moment, put_into, read_scene, seconds_of
-from motioncast.cli.sampling import AS_THE_CARD_SAYS, Sampling, load_sampling
+from motioncast.cli.sampling import AS_THE_CARD_SAYS, Sampling, load_sampling, task_of
+from motioncast.cli.steps import NOT_WATCHED, Watching, tell_steps
 from motioncast.cli.writing import check_suffix, name_of, open_page, page_beside, spare_inputs, write_forecast
 from motioncast.core.forecast import Forecast
 from motioncast.core.forecaster import Forecaster
@@ -27,6 +28,7 @@ def forecast(
     samples: int = 1,
     seed: int = 0,
     sampling: Sampling = AS_THE_CARD_SAYS,
+    watching: Watching = NOT_WATCHED,
     out: Path | None = None,
     view: bool = False,
     json: bool = False,
@@ -46,6 +48,7 @@ def forecast(
         samples: Number of different futures, for models that have several.
         seed: Seed of the samples.
         sampling: How a model that denoises draws its futures.
+        watching: What a model of actions is told besides.
         out: File to write; its suffix tells the format: npz, html, bvh, glb, csv, trc.
         view: Write the interactive page, NAME.forecast.html, and open it in the browser.
         json: Print the forecast as one JSON object.
@@ -55,6 +58,16 @@ def forecast(
         raise InputError("no motion file came; give one scene file, or one motion file a person")
     if out is not None:
         check_suffix(out)
+    if task_of(model) == "actions":
+        if any((seconds, at, room, out, view)) or sampling != AS_THE_CARD_SAYS:
+            raise InputError(
+                "steps have no clock, no room and no file; leave --seconds, --at, --room, --out, --view, --sampler and "
+                "--steps out, and print them with --json"
+            )
+        tell_steps(scenes, watching, reading, model, samples, seed, json)
+        return
+    if watching != NOT_WATCHED:
+        raise InputError(f'"{model}" is no model of actions; leave --actions, --objects and --camera out')
     scene = read_scene(scenes, reading)
     now = scene.frames if at is None else moment(scene, at)
     if room is not None:

@@ -29,6 +29,13 @@ class Sampling:
 AS_THE_CARD_SAYS = Sampling()
 
 
+def task_of(model: str | Path) -> str:
+    """What a model answers with (``card.task``)."""
+    from motioncast.inference.registry import load
+
+    return load(model).card.task
+
+
 def load_sampling(model: str | Path, sampling: Sampling = AS_THE_CARD_SAYS) -> LiveForecaster:
     """A model by name or path that draws its futures so.
 

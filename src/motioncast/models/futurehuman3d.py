@@ -173,7 +173,7 @@ class Encoder(nn.Module):
         if not config.reads_actions:
             done = torch.zeros_like(done)
         if not config.objects:
-            objects = torch.zeros_like(objects[:, :1])
+            objects = 0 * offsets[:, 0, 0, :1]
         steps = poses if self.step is None else self.step(torch.cat([poses, done], -1))
         codes = (self.poses(steps.flatten(1)), self.actions(done.flatten(1)), self.objects(objects))
         return self.join(torch.cat([*codes, noise], 1))

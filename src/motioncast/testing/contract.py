@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from motioncast.core.forecast import Forecast
 from motioncast.core.forecaster import Forecaster
 from motioncast.core.scene import Scene
 from motioncast.errors import SceneError
+from motioncast.testing.action_contract import ACTION_CLAUSES
 from motioncast.testing.scenes import walkers
 
 HORIZON_S = 0.8
@@ -38,8 +40,8 @@ class Check:
     """
 
     name: str
-    model: Forecaster
-    clause: Callable[[Forecaster], None]
+    model: Any
+    clause: Callable[[Any], None]
     exception: str = ""
 
     def __call__(self) -> None:
@@ -61,16 +63,17 @@ class Check:
         return f"{self.model.card.name}-{self.name}"
 
 
-def checks(model: Forecaster) -> list[Check]:
-    """Every clause of the contract for a model."""
+def checks(model: Any) -> list[Check]:
+    """Every clause of the contract for a model of futures, or of actions."""
+    clauses = {"forecast": CLAUSES, "actions": ACTION_CLAUSES}[model.card.task]
     exceptions = model.card.exceptions
-    unknown = set(exceptions) - set(CLAUSES)
+    unknown = set(exceptions) - set(clauses)
     if unknown:
         raise AssertionError(f"{model.card.name} declares exceptions that are no clauses: {sorted(unknown)}")
-    return [Check(name, model, clause, exceptions.get(name, "")) for name, clause in CLAUSES.items()]
+    return [Check(name, model, clause, exceptions.get(name, "")) for name, clause in clauses.items()]
 
 
-def check_forecaster(model: Forecaster) -> None:
+def check_forecaster(model: Any) -> None:
     """Check every clause of the contract.
 
     Raises:

@@ -23,6 +23,7 @@ from torch import Tensor, nn
 
 from motioncast.errors import InputError
 from motioncast.models import build
+from motioncast.training.actions_task import ActionsTask, CmuActionsTask
 from motioncast.training.goals_task import GoalsTask
 from motioncast.training.recipe import Recipe, read_run
 from motioncast.training.room_windows_task import RoomWindowsTask
@@ -32,7 +33,7 @@ from motioncast.training.windows_task import WindowsTask
 
 TASKS = {
     "windows": WindowsTask, "rooms": RoomsTask, "room-windows": RoomWindowsTask,
-    "goals": GoalsTask, "goal-offsets": GoalsTask,
+    "goals": GoalsTask, "goal-offsets": GoalsTask, "actions": ActionsTask, "cmu-actions": CmuActionsTask,
 }  # fmt: skip
 """What a recipe's ``task`` names."""
 

@@ -21,6 +21,7 @@ from motioncast.models import build
 from motioncast.training.export import export
 from motioncast.training.export_diffusion import export_diffusion
 from motioncast.training.recipe import read_run
+from motioncast.training.ship_actions import ship_actions
 from motioncast.training.weights import load_weights
 
 DATA = (
@@ -46,6 +47,8 @@ def ship(run: Path, folder: Path | None = None, radius: Mapping[str, Any] | None
         radius: Error radii for the card (:func:`calibrated`).
     """
     recipe = read_run(run)
+    if recipe.task in ("actions", "cmu-actions"):
+        return ship_actions(run, recipe, folder or run)
     model = build(recipe.model, recipe.sizes)
     load_weights(model, run / "best.pt")
     config = model.config

@@ -93,7 +93,7 @@ def test_fault_04_every_metric_from_its_own_best_state() -> None:
 
 
 def graphs() -> list[str]:
-    return [card.name for card in list_models() if card.parameters and not card.diffusion]
+    return [card.name for card in list_models("forecast") if card.parameters and not card.diffusion]
 
 
 @pytest.mark.parametrize("name", graphs())

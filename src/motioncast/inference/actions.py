@@ -23,6 +23,9 @@ from motioncast.datasets.action_windows import window_of
 from motioncast.errors import InputError, SceneError
 from motioncast.inference.shipped import opened
 
+INPUTS = ("pixels", "seen", "actions", "objects", "camera", "depth", "noise")
+"""What a graph is told, in the order of ``datasets.action_windows.ActionWindows.past``; noise comes last."""
+
 MOST_STEPS = 100
 """Steps that a forecast may be asked for."""
 
@@ -137,8 +140,9 @@ class ActionForecaster:
         if not self._opened:
             self._opened = opened([self.weights], self.card.checksum, self.threads)
         (session,) = self._opened
-        names = (entry.name for entry in session.get_inputs())
-        return session.run(None, dict(zip(names, past, strict=True)))
+        told = dict(zip(INPUTS, past, strict=True))
+        # a graph lacks what its model does not read
+        return session.run(None, {entry.name: told[entry.name] for entry in session.get_inputs()})
 
     def with_threads(self, threads: int) -> ActionForecaster:
         """The same model, computing with so many threads."""

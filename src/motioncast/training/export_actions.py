@@ -13,10 +13,10 @@ from torch import Tensor, nn
 
 from motioncast.core.card import ModelCard
 from motioncast.core.skeletons import UPPER9
+from motioncast.inference.actions import INPUTS
 from motioncast.models.futurehuman3d import FutureHuman3D, Past
 from motioncast.training.export import halved
 
-INPUTS = ("pixels", "seen", "actions", "objects", "camera", "depth", "noise")
 OUTPUTS = ("logits", "poses", "places")
 
 

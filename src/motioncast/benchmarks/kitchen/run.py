@@ -15,10 +15,10 @@ from motioncast.datasets import kitchen
 from motioncast.datasets.action_windows import ActionWindows, cut_steps
 from motioncast.inference.actions import ActionForecaster
 
-SEQUENCES = 100
+SEQUENCES = 300
 """Sequences that are measured."""
 
-STRIDE = 3
+STRIDE = 4
 """Steps from one window to the next."""
 
 

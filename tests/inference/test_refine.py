@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from motioncast.core.skeletons import H36M17
-from motioncast.inference.refine import PoseEnergy, interpolated, lowered
+from motioncast.inference.refine import ANGLES, CLOSENESS, PoseEnergy, interpolated, lowered
 from motioncast.testing import walkers
 
 HANDS = (16, 13)
@@ -18,9 +18,11 @@ def last_poses(count: int = 4) -> np.ndarray:
     return motion - motion[:, :1]
 
 
-def energy_of(last: np.ndarray, sampled: np.ndarray, seed: int = 0) -> PoseEnergy:
-    heat = np.random.default_rng(seed).random((len(last), 17, 16, 16, 16)) * 0.2
-    return PoseEnergy(H36M17, last, HANDS, sampled[:, HANDS], heat)
+def energy_of(
+    last: np.ndarray, sampled: np.ndarray, angles: float = ANGLES, closeness: float = CLOSENESS
+) -> PoseEnergy:
+    heat = np.random.default_rng(0).random((len(last), 17, 16, 16, 16)) * 0.2
+    return PoseEnergy(H36M17, last, HANDS, sampled[:, HANDS], heat, angles=angles, closeness=closeness)
 
 
 def lengths(pose: np.ndarray) -> np.ndarray:
@@ -45,11 +47,11 @@ def test_slopes_written_by_hand_are_those_of_finite_differences(term: str) -> No
 def test_a_shaken_pose_gets_its_bones_back() -> None:
     random, last = np.random.default_rng(0), np.repeat(last_poses(1), 10, 0)
     shaken = last + random.normal(0, 0.03, last.shape)
-    energy = energy_of(last, shaken)
+    energy = energy_of(last, shaken, 0.02, 0.0)
     whole = lowered(energy, shaken)
     before, after = (np.abs(lengths(pose) - lengths(last)) for pose in (shaken, whole))
     assert before.mean() > 0.02
-    assert after.mean() < 0.002
+    assert after.mean() < 0.003
     assert after.max() < 0.01
     assert (energy(whole)[0] < energy(shaken)[0]).all()
 

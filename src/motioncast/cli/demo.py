@@ -47,11 +47,11 @@ def demo(
 
 def _couple(model: str, out: Path) -> Path:
     from motioncast.inference.baselines import RULES
-    from motioncast.inference.registry import load
+    from motioncast.inference.registry import load_forecaster
     from motioncast.metrics.curve import error_curve
 
     history, truth = _example("salsa.npz", COUPLE_S)
-    answers = {name: load(name).forecast(history, horizon_s=COUPLE_S) for name in (model, *RULES)}
+    answers = {name: load_forecaster(name).forecast(history, horizon_s=COUPLE_S) for name in (model, *RULES)}
     answer = answers[model]
     note(answer.warnings)
     curves = {name: error_curve(guess, truth) for name, guess in answers.items()}
@@ -63,11 +63,11 @@ def _couple(model: str, out: Path) -> Path:
 
 
 def _room(model: str, out: Path) -> Path:
-    from motioncast.inference.registry import load
+    from motioncast.inference.registry import load_forecaster
 
     history, truth = _example("room.npz", ROOM_S)
     with progress(f"{model} looks ahead") as told:
-        answer = load(model).forecast(history, horizon_s=ROOM_S, samples=FUTURES, progress=told)
+        answer = load_forecaster(model).forecast(history, horizon_s=ROOM_S, samples=FUTURES, progress=told)
     note(answer.warnings)
 
     print(

@@ -9,6 +9,7 @@ import numpy as np
 
 from motioncast.cli import say
 from motioncast.cli.comparing import error_curves, error_table, summary
+from motioncast.cli.goals import tell_goals
 from motioncast.cli.reading import AS_THE_FILE_SAYS, Reading, frames_needed, moment, put_into, read_scene, seconds_of
 from motioncast.cli.sampling import AS_THE_CARD_SAYS, Sampling, load_sampling, task_of
 from motioncast.cli.steps import NOT_WATCHED, Watching, tell_steps
@@ -25,7 +26,7 @@ def forecast(
     seconds: float | None = None,
     at: float | None = None,
     room: Path | None = None,
-    samples: int = 1,
+    samples: int | None = None,
     seed: int = 0,
     sampling: Sampling = AS_THE_CARD_SAYS,
     watching: Watching = NOT_WATCHED,
@@ -45,7 +46,7 @@ def forecast(
         seconds: Length of the forecast. Default: the model's horizon.
         at: Forecast from this second of the motion and compare with what follows. Default: from its end.
         room: Furniture around the people: a JSON file written by hand, or a GLB whose nodes are named.
-        samples: Number of different futures, for models that have several.
+        samples: Number of different futures, for models that have several, or of goals. Default: 1; 10 goals.
         seed: Seed of the samples.
         sampling: How a model that denoises draws its futures.
         watching: What a model of actions is told besides.
@@ -58,13 +59,14 @@ def forecast(
         raise InputError("no motion file came; give one scene file, or one motion file a person")
     if out is not None:
         check_suffix(out)
-    if task_of(model) == "actions":
+    task = task_of(model)
+    if task == "actions":
         if any((seconds, at, room, out, view)) or sampling != AS_THE_CARD_SAYS:
             raise InputError(
                 "steps have no clock, no room and no file; leave --seconds, --at, --room, --out, --view, --sampler and "
                 "--steps out, and print them with --json"
             )
-        tell_steps(scenes, watching, reading, model, samples, seed, json)
+        tell_steps(scenes, watching, reading, model, samples or 1, seed, json)
         return
     if watching != NOT_WATCHED:
         raise InputError(f'"{model}" is no model of actions; leave --actions, --objects and --camera out')
@@ -72,8 +74,13 @@ def forecast(
     now = scene.frames if at is None else moment(scene, at)
     if room is not None:
         scene = put_into(scene, room, now)
+    if task == "goals":
+        if seconds is not None or view or sampling != AS_THE_CARD_SAYS:
+            raise InputError("goals have no time; leave --seconds, --view, --sampler and --steps out")
+        tell_goals(scene[:now], [*scenes, reading.map, room], name_of(scenes, at), model, samples, seed, out, json)
+        return
     truth = scene[now:] if now < scene.frames else None
-    answer = _answer(scene, now, load_sampling(model, sampling), seconds, samples, seed)
+    answer = _answer(scene, now, load_sampling(model, sampling), seconds, samples or 1, seed)
     say.note(answer.warnings)
 
     usual = Path(f"{name_of(scenes, at)}.forecast.npz")

@@ -40,11 +40,11 @@ def load_sampling(model: str | Path, sampling: Sampling = AS_THE_CARD_SAYS) -> L
     """A model by name or path that draws its futures so.
 
     Raises:
-        InputError: If it does not denoise, or cannot do it so.
+        InputError: If it answers with something else, does not denoise, or cannot do it so.
     """
-    from motioncast.inference.registry import load
+    from motioncast.inference.registry import load_forecaster
 
-    forecaster = load(model)
+    forecaster = load_forecaster(model)
     if sampling == AS_THE_CARD_SAYS:
         return forecaster
     from motioncast.inference.denoiser import DiffusionForecaster

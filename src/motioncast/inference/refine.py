@@ -1,7 +1,7 @@
 """Sampled goal poses made whole: an energy of bones, angles and heat is lowered (Eq. 3.2).
 
 Diller, Funkhouser, Dai, "Forecasting Characteristic 3D Poses of Human Actions" (CVPR 2022), Sec. 3.5. The published
-energy looks heat up by whole voxels, which has no slope; here it is interpolated. Sizes |r| are smooth at 1 mm. All
+energy looks heat up by whole voxels, which has no slope; here it is interpolated. Sizes |r| are smooth at 1 cm. All
 hypotheses are lowered at once by L-BFGS with gradients written by hand.
 """
 
@@ -23,9 +23,12 @@ HANDS, BONES, ANGLES, CLOSENESS, HEAT = 0.2, 1.0, 0.4, 0.1, 0.1
 TRUNK_ANGLES = 5.0
 """Weight of the angles of spine, neck and head among the angles, as in the release; those of limbs count once."""
 
-SMOOTH_M = 1e-3
+SMOOTH = 0.01
+"""Where sizes begin to be round, in metres, and in cosines."""
 
-MEMORY, ITERATIONS, HALVINGS = 20, 100, 12
+MEMORY, ITERATIONS, HALVINGS = 20, 50, 12
+
+FIRST_STEP_M = 0.01
 
 ARMIJO = 1e-4
 """Share of the promised fall that a step must bring."""
@@ -45,6 +48,7 @@ class PoseEnergy:
         sampled: Where they were sampled, ``(n, hands, 3)``.
         heat: Of each joint from 0 to 1, ``(n, joints, cells, cells, cells)``.
         angles: Weight of the angles.
+        closeness: Weight of the distance from the last pose.
     """
 
     skeleton: Skeleton
@@ -53,18 +57,20 @@ class PoseEnergy:
     sampled: np.ndarray
     heat: np.ndarray
     angles: float = ANGLES
+    closeness: float = CLOSENESS
 
     def __call__(self, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Energies ``(n,)`` and gradients ``(n, joints, 3)`` of poses ``(n, joints, 3)``."""
         energy, gradient = np.zeros(len(pose)), np.zeros_like(pose)
         for term in (self._hands, self._bones, self._angles, self._closeness, self._heat):
             energy += term(pose, gradient)
+        gradient[:, 0] = 0  # the hip is the middle by definition
         return energy, gradient
 
     def _hands(self, pose: np.ndarray, gradient: np.ndarray) -> np.ndarray:
         hands = list(self.hands)
         apart = pose[:, hands] - self.sampled
-        distance = np.sqrt(np.square(apart).sum((1, 2)) + SMOOTH_M**2)
+        distance = np.sqrt(np.square(apart).sum((1, 2)) + SMOOTH**2)
         gradient[:, hands] += HANDS * apart / distance[:, None, None]
         return HANDS * distance
 
@@ -89,8 +95,8 @@ class PoseEnergy:
 
     def _closeness(self, pose: np.ndarray, gradient: np.ndarray) -> np.ndarray:
         size, slope = _size(pose - self.last)
-        gradient += CLOSENESS * slope
-        return CLOSENESS * size.sum((1, 2))
+        gradient += self.closeness * slope
+        return self.closeness * size.sum((1, 2))
 
     def _heat(self, pose: np.ndarray, gradient: np.ndarray) -> np.ndarray:
         value, slope = interpolated(self.heat, pose)
@@ -151,10 +157,11 @@ def lowered(energy: Energy, pose: np.ndarray, iterations: int = ITERATIONS) -> n
 
     value, slope = at(now)
     moves: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
+    fresh = np.ones(count, bool)  # poses without a memory of moves: their first step is 1 cm
     for _ in range(iterations):
         ahead = -_two_loops(slope, moves)
         falls = (ahead * slope).sum(1)
-        length = np.ones(count) if moves else 1e-2 / np.maximum(np.abs(slope).max(1), 1e-9)
+        length = np.where(fresh, FIRST_STEP_M / np.maximum(np.abs(slope).max(1), 1e-9), 1.0)
         new, new_value, new_slope = now, value, slope
         done = np.zeros(count, bool)
         for _ in range(HALVINGS):
@@ -168,12 +175,13 @@ def lowered(energy: Energy, pose: np.ndarray, iterations: int = ITERATIONS) -> n
             if done.all():
                 break
             length = np.where(done, length, length / 2)
-        if not done.any():
-            break
         step, bend = new - now, new_slope - slope
         curve = (step * bend).sum(1)
-        inverse = np.where(curve > 1e-12, 1 / np.where(curve > 1e-12, curve, 1), 0)  # 0: this move tells nothing
-        moves = [*moves, (step, bend, inverse)][-MEMORY:]
+        tells = done & (curve > 1e-8 * np.linalg.norm(step, axis=1) * np.linalg.norm(bend, axis=1))
+        inverse = np.where(tells, 1 / np.where(tells, curve, 1), 0)
+        # who found no step forgets its moves: with them it would look the same way again
+        moves = [*((one, other, known * done) for one, other, known in moves), (step, bend, inverse)][-MEMORY:]
+        fresh = ~done
         now, value, slope = new, new_value, new_slope
     return now.reshape(shape)
 
@@ -197,13 +205,13 @@ def _two_loops(slope: np.ndarray, moves: list[tuple[np.ndarray, np.ndarray, np.n
 
 def _size(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """|values|, smooth at zero, and its slope."""
-    root = np.sqrt(values * values + SMOOTH_M**2)
-    return root - SMOOTH_M, values / root
+    root = np.sqrt(values * values + SMOOTH**2)
+    return root - SMOOTH, values / root
 
 
 def _lengths(vectors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Vectors and their lengths; a tiny constant keeps the slope finite where one vanishes."""
-    return vectors, np.sqrt(np.square(vectors).sum(-1) + 1e-12)
+    """Vectors and their lengths, round at zero: where two joints fall together the slope stays finite."""
+    return vectors, np.sqrt(np.square(vectors).sum(-1) + SMOOTH**2)
 
 
 def _cosines(one: np.ndarray, other: np.ndarray) -> np.ndarray:

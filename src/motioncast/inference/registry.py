@@ -126,9 +126,12 @@ def _graph(weights: Path) -> Any:
     # onnxruntime only where a graph is run
     from motioncast.inference.actions import ActionForecaster
     from motioncast.inference.denoiser import DiffusionForecaster
+    from motioncast.inference.goals import GoalForecaster
     from motioncast.inference.session import GraphForecaster
 
     card = _card(weights)
+    if card.task == "goals":
+        return GoalForecaster(card, weights)
     if card.task == "actions":
         return ActionForecaster(card, weights)
     return DiffusionForecaster(card, weights) if card.diffusion else GraphForecaster(card, weights)

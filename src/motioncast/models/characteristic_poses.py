@@ -12,6 +12,8 @@ Four presets. ``paper-grab`` and ``paper-h36m`` are three networks as the text h
 their cross entropy, and most levels carry no weight in it. ``light``, the default, is ours, for two CPU cores:
 
 - One network for the three stages: it is told the stage, and sees no hand that is not yet known.
+- A token, told how far the known hands are from where they were, also points to a few places around its joint's last
+  one (``nn/bumps.py``); the decoders add their heat and offsets. Volumes alone need far more poses than there are.
 - Volumes are 32 channels wide at 8 voxels an edge and 16 at 16; the last layer answers only for joints that are asked.
 - What depends on the history alone is computed once for all hypotheses.
 - The cube does not lean but turns with the person, so a scene that is turned has its answer turned; the hip's own row
@@ -30,6 +32,7 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
+from motioncast.nn.bumps import Bumps
 from motioncast.nn.losses import mean_over
 from motioncast.nn.voxels import (
     CLASSES,
@@ -62,6 +65,7 @@ class CharacteristicPosesConfig:
         coarse: Light: channels at half of the voxels.
         fine: Light: channels at all of them.
         last: Light: channels before the last layers.
+        bumps: Light: places that a token points to.
         dropout: Share of dropped numbers of the attention in training.
         actions: Labels of the action token; 0: none.
         partner: Whether the joints of a partner's last pose are tokens too (ours; light only).
@@ -76,7 +80,8 @@ class CharacteristicPosesConfig:
     cells: int = 16
     coarse: int = 32
     fine: int = 16
-    last: int = 64
+    last: int = 32
+    bumps: int = 8
     dropout: float = 0.25
     actions: int = 0
     partner: bool = False
@@ -96,7 +101,7 @@ PRESETS: dict[str, CharacteristicPosesConfig] = {
     "paper-h36m": CharacteristicPosesConfig("paper", **H36M),
     "release-grab": CharacteristicPosesConfig("release", **GRAB),
     "release-h36m": CharacteristicPosesConfig("release", **H36M),
-    "tiny": CharacteristicPosesConfig(cells=8, coarse=8, fine=8, last=8),
+    "tiny": CharacteristicPosesConfig(cells=8, coarse=8, fine=8, last=8, bumps=3),
 }
 """Ours for two CPU cores, the published networks on both data sets, and a toy for tests."""
 
@@ -343,6 +348,7 @@ class LightNetwork(nn.Module):
         self.stage = nn.Embedding(3, width)
         self.action = nn.Embedding(config.actions, width) if config.actions else None
         self.attention = JointAttention(width, joints, config.dropout)
+        self.pointers = Bumps(width + 6, config.bumps, config.cells)
         self.head = nn.Sequential(Block(joints, coarse, doubling=True), Block(coarse, coarse), Block(coarse, coarse))
         self.tail = nn.Sequential(Block(coarse, fine, doubling=True), Block(fine, fine), Block(fine, config.last))
         self.coarse_heads = JointHeads(coarse, joints, CLASSES)
@@ -353,6 +359,8 @@ class LightNetwork(nn.Module):
         self.offset_volume = nn.Conv3d(3 * joints, fine, 3, padding=1, bias=False)
         self.offset_tail = nn.Sequential(Block(fine, fine), Block(fine, config.last))
         self.offset_heads = JointHeads(config.last, joints, 3)
+        nn.init.zeros_(self.offset_heads.weight)
+        nn.init.zeros_(self.offset_heads.bias)
 
     def forward(
         self,
@@ -386,12 +394,17 @@ class LightNetwork(nn.Module):
         latent = self.attention(each[:, : config.joints] + self.stage(stage), each, bias[:, None])
         cube = as_cubes(latent, config)
         at_half = self.head(cube)
+        last = history[:, -1].repeat_interleave(hypotheses, 0)
+        moved = (known.flatten(0, 1) - last[:, list(config.hands)]) * (order < stage)[:, None]
+        told = torch.cat([latent[:, asked], moved.flatten(1)[:, None].expand(-1, asked.shape[0], -1)], -1)
+        height, levels, place = self.pointers(told, last[:, asked])
+        pointed = (levels @ height).unflatten(-1, (config.cells,) * 3)
         offsets = None
         if not heat_only:
             volume = self.offset_volume(offsets_to(history[:, -1], config.cells).flatten(1, 2))
             offsets = self.offset_tail(self.offset_head(cube) + volume.repeat_interleave(hypotheses, 0))
-            offsets = self.offset_heads(offsets, asked)
-        return Prediction(self.heads(self.tail(at_half), asked), self.coarse_heads(at_half, asked), offsets)
+            offsets = self.offset_heads(offsets, asked) + self.pointers.offsets(height, place)
+        return Prediction(self.heads(self.tail(at_half), asked) + pointed, self.coarse_heads(at_half, asked), offsets)
 
 
 def placed(tokens: Tensor, joints: range | tuple[int, ...]) -> Tensor:

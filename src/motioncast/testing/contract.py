@@ -23,6 +23,7 @@ from motioncast.core.forecaster import Forecaster
 from motioncast.core.scene import Scene
 from motioncast.errors import SceneError
 from motioncast.testing.action_contract import ACTION_CLAUSES
+from motioncast.testing.goal_contract import GOAL_CLAUSES
 from motioncast.testing.scenes import walkers
 
 HORIZON_S = 0.8
@@ -64,8 +65,8 @@ class Check:
 
 
 def checks(model: Any) -> list[Check]:
-    """Every clause of the contract for a model of futures, or of actions."""
-    clauses = {"forecast": CLAUSES, "actions": ACTION_CLAUSES}[model.card.task]
+    """Every clause of the contract for a model of futures, of goals, or of actions."""
+    clauses = {"forecast": CLAUSES, "goals": GOAL_CLAUSES, "actions": ACTION_CLAUSES}[model.card.task]
     exceptions = model.card.exceptions
     unknown = set(exceptions) - set(clauses)
     if unknown:

@@ -20,6 +20,7 @@ from motioncast.inference.registry import load
 from motioncast.models import build
 from motioncast.training.export import export
 from motioncast.training.export_diffusion import export_diffusion
+from motioncast.training.export_goals import export_goals
 from motioncast.training.recipe import read_run
 from motioncast.training.ship_actions import ship_actions
 from motioncast.training.weights import load_weights
@@ -32,10 +33,17 @@ ROOMS = (
     "rooms composed from CMU motion capture (mocap.cs.cmu.edu, created with funding from NSF EIA-0196217) by "
     "datasets/rooms, split as there: real takes stitched together, furniture inferred from what people do, and decoys"
 )
+GOALS = (
+    "characteristic poses found in CMU motion capture (mocap.cs.cmu.edu, created with funding from NSF EIA-0196217): "
+    "the training takes of datasets/cmu_goals.py"
+)
 LICENCE = "Apache-2.0; trained on CMU's data, which is free for research and products but not to be resold"
 
 SAMPLING = {"sampler": "dpm-solver++", "sampling_steps": 20}
 """How a diffusion is sampled where nobody asks otherwise."""
+
+ROUGH_M = 0.02
+"""How exactly goals hold their invariances: refinement goes another way where a question is rounded otherwise."""
 
 
 def ship(run: Path, folder: Path | None = None, radius: Mapping[str, Any] | None = None) -> ModelCard:
@@ -52,7 +60,7 @@ def ship(run: Path, folder: Path | None = None, radius: Mapping[str, Any] | None
     model = build(recipe.model, recipe.sizes)
     load_weights(model, run / "best.pt")
     config = model.config
-    denoises = recipe.task == "rooms"
+    denoises, finds_goals = recipe.task == "rooms", recipe.task in ("goals", "goal-offsets")
     lines = (run / "metrics.jsonl").read_text(encoding="utf-8").splitlines()
     best = min(map(json.loads, lines), key=lambda entry: entry["score"])
     card = ModelCard(
@@ -62,10 +70,10 @@ def ship(run: Path, folder: Path | None = None, radius: Mapping[str, Any] | None
         history=config.history,
         horizon=config.horizon,
         fps=config.fps,
-        data=DATA if recipe.task == "windows" else ROOMS,
+        data=DATA if recipe.task == "windows" else GOALS if finds_goals else ROOMS,
         licence=LICENCE,
         figures={
-            "validation_loss" if denoises else "validation_ratio_to_zero_velocity": {
+            "validation_loss" if denoises or finds_goals else "validation_ratio_to_zero_velocity": {
                 name: round(value, 4) for name, value in best["validation"].items()
             },
             "chosen_at_step": best["step"],
@@ -83,6 +91,8 @@ def ship(run: Path, folder: Path | None = None, radius: Mapping[str, Any] | None
     if denoises:
         diffusion = {"steps": config.steps, "shift": config.shift, **SAMPLING}
         return export_diffusion(model, replace(card, stochastic=True, diffusion=diffusion), folder or run)
+    if finds_goals:
+        return export_goals(model, replace(card, task="goals", stochastic=True, tolerance_m=ROUGH_M), folder or run)
     return export(model, card, folder or run)
 
 

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from cells import cell
 
 from motioncast.benchmarks.goals.guesses import average_pose, nearest_neighbours, random_voxels, zero_velocity
 from motioncast.benchmarks.goals.questions import GOALS, Questions, asked_of, questions
@@ -160,22 +161,12 @@ def kept(model: GoalModel, asked: Questions, goals: int, cache: Path | None, nam
     return np.load(path).astype(np.float64)
 
 
-def cell(row: Row | None, column: Column) -> str:
-    """A figure and half of its interval."""
-    if row is None:
-        return "-"
-    text = f"{column.scale * row.value:.{column.digits}f}"
-    if row.low is None or row.high is None:
-        return text
-    return f"{text} ±{column.scale * (row.high - row.low) / 2:.{column.digits}f}"
-
-
 def markdown(table: Table, columns: Sequence[Column]) -> str:
     """A table; a column whose metric has a gap is filled with the best of all goals where there are several."""
     lines = [f"| model | {' | '.join(column.head for column in columns)} |", "|---|" + "---:|" * len(columns)]
     for name, figures in table.items():
         first = BEST if BEST in figures else FIRST
-        cells = (cell(figures.get(column.metric.format(first)), column) for column in columns)
+        cells = (cell(figures.get(column.metric.format(first)), column.digits, column.scale) for column in columns)
         lines.append(f"| `{name}` | {' | '.join(cells)} |")
     return "\n".join([*lines, ""])
 

@@ -22,6 +22,8 @@ IN_README = ("cmu-duet", "cmu-crowd")
 ELSEWHERE = {
     "rooms": ("ten seconds among furniture", "rooms_table.py"),
     "cmu-goals": ("ten characteristic poses, without a time", "goals_table.py"),
+    "kitchen": ("actions and poses of synthetic cooks, step by step", "actions_table.py"),
+    "cmu-actions": ("actions and poses of labelled exercises, a demonstration", "cmu_actions_table.py"),
 }
 """Boards that other programs write: what they are of, and which."""
 

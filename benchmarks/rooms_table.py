@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from cells import cell
 
 from motioncast.benchmarks.result import Row, save_result, shipped_results
 from motioncast.benchmarks.rooms.run import MADE, ROOMS, forecast_rooms, real_words, result_of, room_windows, score
@@ -213,20 +214,13 @@ def judged(
             table[name] |= {("realism_unseen_until", moment): row for (_, moment), row in found.items()}
 
 
-def cell(row: Row | None, column: Column) -> str:
-    """A figure and half of its interval."""
-    if row is None:
-        return "-"
-    text = f"{column.scale * row.value:.{column.digits}f}"
-    if row.low is None or row.high is None:
-        return text
-    return f"{text} ±{column.scale * (row.high - row.low) / 2:.{column.digits}f}"
-
-
 def markdown(table: Table, columns: Sequence[Column], mark: str = "") -> str:
     lines = [f"| model | {' | '.join(column.head for column in columns)} |", "|---|" + "---:|" * len(columns)]
     for name, figures in table.items():
-        cells = (cell(figures.get((column.metric + mark, column.moment_s)), column) for column in columns)
+        cells = (
+            cell(figures.get((column.metric + mark, column.moment_s)), column.digits, column.scale)
+            for column in columns
+        )
         lines.append(f"| `{name}` | {' | '.join(cells)} |")
     return "\n".join([*lines, ""])
 

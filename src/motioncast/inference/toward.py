@@ -61,19 +61,15 @@ def toward(
         SceneError: If the model forecasts other people than the goals are of.
     """
     scene, count = goals.history, len(goals.poses)
-    if isinstance(model, DiffusionForecaster):
-        led = model.led_to(goals)
-        answer = led.forecast(scene, horizon_s=horizon_s, samples=count, seed=seed, progress=progress)
-    else:
-        answer = model.forecast(scene, horizon_s=horizon_s, seed=seed, progress=progress)
+    denoises = isinstance(model, DiffusionForecaster)
+    asked = model.led_to(goals) if denoises else model
+    answer = asked.forecast(scene, horizon_s=horizon_s, samples=count if denoises else 1, seed=seed, progress=progress)
     if answer.people != goals.people:
         raise SceneError(
             f'"{model.card.name}" forecasts {", ".join(answer.people)}; the goals are of {", ".join(goals.people)}, '
             "so ask both about the same scene"
         )
-    samples = answer.samples
-    if not isinstance(model, DiffusionForecaster):
-        samples = np.stack([ended_in(answer.best, pose, goals) for pose in goals.poses])
+    samples = answer.samples if denoises else np.stack([ended_in(answer.best, pose, goals) for pose in goals.poses])
     told = f'led to the goals of "{goals.card.name}", which has no word on when they are reached: here at the end'
     return replace(
         answer,

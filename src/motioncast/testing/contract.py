@@ -24,7 +24,7 @@ from motioncast.core.scene import Scene
 from motioncast.errors import SceneError
 from motioncast.testing.action_contract import ACTION_CLAUSES
 from motioncast.testing.goal_contract import GOAL_CLAUSES
-from motioncast.testing.scenes import walkers
+from motioncast.testing.scenes import padded, unseen, walkers
 
 HORIZON_S = 0.8
 
@@ -119,14 +119,12 @@ def reordering(model: Forecaster) -> None:
 def absent_person(model: Forecaster) -> None:
     """A person who was there earlier and has left is not forecast, and changes nothing for the others."""
     scene = walkers()
-    gone = scene.observed.copy()
-    gone[scene.frames // 2 :, 2] = False
-    left = replace(scene, observed=gone)
+    left = unseen(scene, (slice(scene.frames // 2, None), 2))
     answer = _ask(model, left)
     assert answer.people == scene.people[:2]
     other = scene.positions.copy()
     other[:, 2] += 3.0
-    changed = _ask(model, replace(scene, positions=other, observed=gone))
+    changed = _ask(model, replace(left, positions=other))
     _close(model, answer.samples, changed.samples, "an absent person's motion")
     _close(model, answer.samples, _ask(model, scene.select(scene.people[:2])).samples, "an absent person")
 
@@ -134,13 +132,7 @@ def absent_person(model: Forecaster) -> None:
 def padding(model: Forecaster) -> None:
     """A slot for a person who is never seen changes nothing."""
     scene = walkers()
-    padded = Scene(
-        np.pad(scene.positions, ((0, 0), (0, 2), (0, 0), (0, 0))),
-        scene.skeleton,
-        scene.fps,
-        np.pad(scene.observed, ((0, 0), (0, 2), (0, 0))),
-    )
-    answer = _ask(model, padded)
+    answer = _ask(model, padded(scene))
     assert answer.people == scene.people
     _close(model, answer.samples, _ask(model, scene).samples, "empty slots")
 
@@ -148,10 +140,7 @@ def padding(model: Forecaster) -> None:
 def not_a_number(model: Forecaster) -> None:
     """What is not a number counts as not seen; numbers beyond reason are refused with a sentence, or answered."""
     scene = walkers()
-    holes = scene.observed.copy()
-    holes[-4:-2, 0, 14] = False
-    holes[3, 1] = False
-    answer = _ask(model, replace(scene, positions=np.where(holes[..., None], scene.positions, np.nan), observed=holes))
+    answer = _ask(model, unseen(scene, (slice(-4, -2), 0, 14), (3, 1), lost=True))
     assert np.isfinite(answer.samples).all()
     try:
         answer = _ask(model, replace(scene, positions=scene.positions * np.float32(1e30)))
@@ -177,9 +166,7 @@ def one_person(model: Forecaster) -> None:
 def late_person(model: Forecaster) -> None:
     """A person who has just appeared is answered and flagged, or answered by the model; never refused."""
     scene = walkers()
-    late = scene.observed.copy()
-    late[:-2, 1] = False
-    answer = _ask(model, replace(scene, observed=late))
+    answer = _ask(model, unseen(scene, (slice(-2), 1)))
     assert answer.people == scene.people
     assert np.isfinite(answer.samples).all()
 
@@ -214,10 +201,7 @@ def question_untouched(model: Forecaster) -> None:
 def gaps(model: Forecaster) -> None:
     """Joints that are not seen for a while, or at last, do not make the answer jump or fail."""
     scene = walkers()
-    holes = scene.observed.copy()
-    holes[-3:, 0, 14] = False
-    holes[-9:-6, 1] = False
-    answer = _ask(model, replace(scene, observed=holes))
+    answer = _ask(model, unseen(scene, (slice(-3, None), 0, 14), (slice(-9, -6), 1)))
     assert np.isfinite(answer.samples).all()
     whole = np.linalg.norm(answer.samples - _ask(model, scene).samples, axis=-1)[0]
     assert whole[:, 1].mean() < 0.1, f"three lost frames move the answer by {whole[:, 1].mean() * 1000:.0f} mm"
@@ -227,11 +211,8 @@ def gaps(model: Forecaster) -> None:
 
 def nobody(model: Forecaster) -> None:
     """A scene whose last frame is empty is refused with a sentence."""
-    scene = walkers()
-    empty = scene.observed.copy()
-    empty[-1] = False
     try:
-        _ask(model, replace(scene, observed=empty))
+        _ask(model, unseen(walkers(), (-1,)))
     except SceneError:
         return
     raise AssertionError("nobody was there, and yet an answer came")

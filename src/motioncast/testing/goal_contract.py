@@ -11,7 +11,7 @@ import numpy as np
 from motioncast.core.goal_poses import GoalPoses
 from motioncast.core.scene import Scene
 from motioncast.errors import SceneError
-from motioncast.testing.scenes import walkers
+from motioncast.testing.scenes import padded, unseen, walkers
 
 LIMBS = ("knee", "ankle", "elbow", "wrist")
 
@@ -67,35 +67,25 @@ def reordering(model: Any) -> None:
 def absent_person(model: Any) -> None:
     """A person who was there earlier and has left has no goals, and changes nothing for the others."""
     scene = walkers()
-    gone = scene.observed.copy()
-    gone[scene.frames // 2 :, 2] = False
-    answer = _ask(model, replace(scene, observed=gone))
+    left = unseen(scene, (slice(scene.frames // 2, None), 2))
+    answer = _ask(model, left)
     assert answer.people == scene.people[:2]
     other = scene.positions.copy()
     other[:, 2] += 3.0
-    _same(model, answer, _ask(model, replace(scene, positions=other, observed=gone)), "an absent person's motion")
+    _same(model, answer, _ask(model, replace(left, positions=other)), "an absent person's motion")
     _same(model, answer, _ask(model, scene.select(scene.people[:2])), "an absent person")
 
 
 def padding(model: Any) -> None:
     """A slot for a person who is never seen changes nothing."""
     scene = walkers()
-    padded = Scene(
-        np.pad(scene.positions, ((0, 0), (0, 2), (0, 0), (0, 0))),
-        scene.skeleton,
-        scene.fps,
-        np.pad(scene.observed, ((0, 0), (0, 2), (0, 0))),
-    )
-    _same(model, _ask(model, padded), _ask(model, scene), "empty slots")
+    _same(model, _ask(model, padded(scene)), _ask(model, scene), "empty slots")
 
 
 def not_a_number(model: Any) -> None:
     """What is not a number counts as not seen; numbers beyond reason are refused with a sentence, or answered."""
     scene = walkers()
-    holes = scene.observed.copy()
-    holes[-4:-2, 0, 14] = False
-    holes[3, 1] = False
-    lost = replace(scene, positions=np.where(holes[..., None], scene.positions, np.nan), observed=holes)
+    lost = unseen(scene, (slice(-4, -2), 0, 14), (3, 1), lost=True)
     assert np.isfinite(_ask(model, lost).poses).all()
     try:
         answer = _ask(model, replace(scene, positions=scene.positions * np.float32(1e30)))
@@ -116,9 +106,7 @@ def apart_from_others(model: Any) -> None:
 def late_person(model: Any) -> None:
     """A person who has just appeared is answered and flagged, or answered by the model; never refused."""
     scene = walkers()
-    late = scene.observed.copy()
-    late[:-2, 1] = False
-    answer = _ask(model, replace(scene, observed=late))
+    answer = _ask(model, unseen(scene, (slice(-2), 1)))
     assert answer.people == scene.people
     assert np.isfinite(answer.poses).all()
     assert answer.warnings or not answer.guessed.any()
@@ -152,10 +140,7 @@ def question_untouched(model: Any) -> None:
 def gaps(model: Any) -> None:
     """Joints that are not seen for a while, or at last, do not make the answer fail."""
     scene = walkers()
-    holes = scene.observed.copy()
-    holes[-3:, 0, 14] = False
-    holes[-9:-6, 1] = False
-    answer = _ask(model, replace(scene, observed=holes))
+    answer = _ask(model, unseen(scene, (slice(-3, None), 0, 14), (slice(-9, -6), 1)))
     assert answer.people == scene.people
     near = np.linalg.norm(answer.best - scene.positions[-1], axis=-1)
     assert near.max() < 2.0, f"a joint is {near.max():.1f} m from where it was"
@@ -163,11 +148,8 @@ def gaps(model: Any) -> None:
 
 def nobody(model: Any) -> None:
     """A scene whose last frame is empty is refused with a sentence."""
-    scene = walkers()
-    empty = scene.observed.copy()
-    empty[-1] = False
     try:
-        _ask(model, replace(scene, observed=empty))
+        _ask(model, unseen(walkers(), (-1,)))
     except SceneError:
         return
     raise AssertionError("nobody was there, and yet an answer came")

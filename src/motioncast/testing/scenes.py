@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from motioncast.core.scene import Scene
@@ -59,6 +61,32 @@ def walkers(people: int = 3, frames: int = 60, fps: float = 15.0, seed: int = 0)
         positions[:, person, :, 1] = sine * x + cosine * y + (path[:, 1:] + place[1])
         positions[:, person, :, 2] = pose[..., 2]
     return Scene(positions, MRT15, fps, source="made-up walkers")
+
+
+def padded(scene: Scene, slots: int = 2) -> Scene:
+    """A scene with slots for people who are never seen."""
+    return Scene(
+        np.pad(scene.positions, ((0, 0), (0, slots), (0, 0), (0, 0))),
+        scene.skeleton,
+        scene.fps,
+        np.pad(scene.observed, ((0, 0), (0, slots), (0, 0))),
+    )
+
+
+def unseen(scene: Scene, *places: tuple[int | slice, ...], lost: bool = False) -> Scene:
+    """A scene in which some places of its mask (frames, people, joints) were not seen.
+
+    Args:
+        scene: The scene.
+        places: Indices of the mask.
+        lost: Whether what was not seen is not a number either.
+    """
+    observed, positions = scene.observed.copy(), scene.positions
+    for place in places:
+        observed[place] = False
+    if lost:
+        positions = np.where(observed[..., None], positions, np.nan)
+    return replace(scene, positions=positions, observed=observed)
 
 
 def _swing(pose: np.ndarray, pivot: str, parts: tuple[str, ...], angle: np.ndarray) -> None:

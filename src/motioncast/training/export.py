@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import warnings
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -61,12 +62,23 @@ def export(model: nn.Module, card: ModelCard, folder: Path) -> ModelCard:
             dynamo=False,
         )
     path.write_bytes(halved(onnx.load(path)).SerializeToString())
-    done = replace(
-        card,
-        parameters=sum(parameter.numel() for parameter in model.parameters()),
-        checksum=hashlib.sha256(path.read_bytes()).hexdigest(),
-    )
-    path.with_suffix(".json").write_text(done.to_json() + "\n", encoding="utf-8")
+    return signed(card, model.parameters(), path)
+
+
+def signed(card: ModelCard, parameters: Iterable[Tensor], *graphs: Path) -> ModelCard:
+    """Write the card beside its graphs, of which the last one bears its name.
+
+    Args:
+        card: The card.
+        parameters: What was trained of the network that answers.
+        graphs: The ONNX files, in the order in which they are opened.
+
+    Returns:
+        The card with the number of parameters and the checksum of the graphs, one after the other.
+    """
+    checksum = hashlib.sha256(b"".join(graph.read_bytes() for graph in graphs)).hexdigest()
+    done = replace(card, parameters=sum(part.numel() for part in parameters), checksum=checksum)
+    graphs[-1].with_suffix(".json").write_text(done.to_json() + "\n", encoding="utf-8")
     return done
 
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
 import warnings
-from dataclasses import replace
 from pathlib import Path
 
 import onnx
@@ -15,7 +13,7 @@ from motioncast.core.card import ModelCard
 from motioncast.core.skeletons import UPPER9
 from motioncast.inference.actions import INPUTS
 from motioncast.models.futurehuman3d import FutureHuman3D, Past
-from motioncast.training.export import halved
+from motioncast.training.export import halved, signed
 
 OUTPUTS = ("logits", "poses", "places")
 
@@ -66,10 +64,4 @@ def export_actions(model: FutureHuman3D, card: ModelCard, folder: Path) -> Model
         )
     path.write_bytes(halved(onnx.load(path)).SerializeToString())
     answering = (part for name, part in model.named_parameters() if not name.startswith("critic."))
-    done = replace(
-        card,
-        parameters=sum(part.numel() for part in answering),
-        checksum=hashlib.sha256(path.read_bytes()).hexdigest(),
-    )
-    path.with_suffix(".json").write_text(done.to_json() + "\n", encoding="utf-8")
-    return done
+    return signed(card, answering, path)

@@ -6,9 +6,7 @@ loop over steps is not. Weights are stored as float16 and computed with as float
 
 from __future__ import annotations
 
-import hashlib
 import warnings
-from dataclasses import replace
 from pathlib import Path
 
 import onnx
@@ -21,7 +19,7 @@ from motioncast.core.skeleton import Skeleton
 from motioncast.models.sast import SAST
 from motioncast.nn.frames import turn
 from motioncast.nn.hips import stand_on_hips
-from motioncast.training.export import halved
+from motioncast.training.export import halved, signed
 
 SCENE = {
     "codes": {0: "people", 1: "objects"},
@@ -125,13 +123,7 @@ def export_diffusion(model: SAST, card: ModelCard, folder: Path) -> ModelCard:
     scene_path, path = folder / f"{card.name}.scene.onnx", folder / f"{card.name}.onnx"
     _write(_Scene(model), (torch.rand(people, things, WIDTH), there), scene_path, SCENE)
     _write(_Step(model), step, path, STEP)
-    done = replace(
-        card,
-        parameters=sum(parameter.numel() for parameter in model.parameters()),
-        checksum=hashlib.sha256(scene_path.read_bytes() + path.read_bytes()).hexdigest(),
-    )
-    path.with_suffix(".json").write_text(done.to_json() + "\n", encoding="utf-8")
-    return done
+    return signed(card, model.parameters(), scene_path, path)
 
 
 def _write(graph: nn.Module, inputs: tuple[Tensor, ...], path: Path, axes: dict[str, dict[int, str]]) -> None:

@@ -6,9 +6,7 @@ that are asked for. Levels become heat inside, so that little comes out. Weights
 
 from __future__ import annotations
 
-import hashlib
 import warnings
-from dataclasses import replace
 from pathlib import Path
 
 import onnx
@@ -19,7 +17,7 @@ from motioncast.core.card import ModelCard
 from motioncast.errors import InputError
 from motioncast.models.characteristic_poses import CharacteristicPoses
 from motioncast.nn.voxels import CLASSES
-from motioncast.training.export import halved
+from motioncast.training.export import halved, signed
 
 AXES = {
     "history": {0: "people"},
@@ -97,10 +95,4 @@ def export_goals(model: CharacteristicPoses, card: ModelCard, folder: Path) -> M
             opset_version=18, dynamo=False,
         )  # fmt: skip
     path.write_bytes(halved(onnx.load(path)).SerializeToString())
-    done = replace(
-        card,
-        parameters=sum(parameter.numel() for parameter in model.parameters()),
-        checksum=hashlib.sha256(path.read_bytes()).hexdigest(),
-    )
-    path.with_suffix(".json").write_text(done.to_json() + "\n", encoding="utf-8")
-    return done
+    return signed(card, model.parameters(), path)

@@ -6,13 +6,12 @@ split, which hold takes of the rooms that are measured.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import torch
-from torch import Tensor, nn
 
 from motioncast.core.skeletons import SKELETONS
 from motioncast.datasets.mixer import turned
@@ -21,12 +20,12 @@ from motioncast.training.ahead import ahead
 from motioncast.training.batches import Batch
 from motioncast.training.recipe import Recipe
 from motioncast.training.rooms_task import VALIDATION_ROOMS, VALIDATION_SEED, Kept, draw, keep
-from motioncast.training.windows_task import ratio
+from motioncast.training.windows_task import WindowsTask
 
 VALIDATION_WINDOWS = 400
 
 
-class RoomWindowsTask:
+class RoomWindowsTask(WindowsTask):
     """Windows of rooms built from the training takes, as long as the model reads and answers.
 
     Args:
@@ -44,7 +43,7 @@ class RoomWindowsTask:
         held_out = empty(keep(data, "validation", VALIDATION_ROOMS, VALIDATION_SEED, skeleton))
         checks = self.batch(held_out, VALIDATION_WINDOWS, np.random.default_rng(VALIDATION_SEED), mirror=0.0)
         unnamed = ("rooms",) * VALIDATION_WINDOWS, ((0,),) * VALIDATION_WINDOWS
-        self.checks = Windows(checks.positions, checks.observed, *unnamed, self.config.history)
+        self.checks = {"rooms": Windows(checks.positions, checks.observed, *unnamed, self.config.history)}
         if hasattr(model, "fit_statistics"):
             drawn = self.batch(self.train, 1000, np.random.default_rng(recipe.seed), recipe.mirror)
             history = drawn.positions[:, : self.config.history, 0]
@@ -73,16 +72,6 @@ class RoomWindowsTask:
             positions[row, :, : len(chosen)] = whole[:, chosen]
             observed[row, :, : len(chosen)] = mask[:, chosen, None]
         return Batch(positions, observed, positions[:, : config.history])
-
-    def loss(self, model: Any, batch: Batch, place: Callable[[np.ndarray], Tensor]) -> Tensor:
-        """The model's own loss of a batch, whose arrays ``place`` brings to the model's device."""
-        seen, observed, truth = map(place, (batch.seen, batch.observed, batch.positions))
-        h = self.config.history
-        return self.own_loss(model(seen, observed[:, :h]), truth[:, h:], observed[:, h:])
-
-    def scores(self, model: nn.Module) -> dict[str, float]:
-        """The ratio to standing still on validation rooms."""
-        return {"rooms": ratio(model, self.checks, self.config.fps)}
 
 
 def empty(rooms: list[Kept]) -> list[Kept]:

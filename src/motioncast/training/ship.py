@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -22,6 +21,7 @@ from motioncast.training.export import export
 from motioncast.training.export_diffusion import export_diffusion
 from motioncast.training.export_goals import export_goals
 from motioncast.training.recipe import read_run
+from motioncast.training.record import best_look, cost, figures
 from motioncast.training.ship_actions import ship_actions
 from motioncast.training.weights import load_weights
 
@@ -61,8 +61,7 @@ def ship(run: Path, folder: Path | None = None, radius: Mapping[str, Any] | None
     load_weights(model, run / "best.pt")
     config = model.config
     denoises, finds_goals = recipe.task == "rooms", recipe.task in ("goals", "goal-offsets")
-    lines = (run / "metrics.jsonl").read_text(encoding="utf-8").splitlines()
-    best = min(map(json.loads, lines), key=lambda entry: entry["score"])
+    best = best_look(run)
     card = ModelCard(
         name=recipe.name,
         task="forecast",
@@ -72,20 +71,10 @@ def ship(run: Path, folder: Path | None = None, radius: Mapping[str, Any] | None
         fps=config.fps,
         data=DATA if recipe.task == "windows" else GOALS if finds_goals else ROOMS,
         licence=LICENCE,
-        figures={
-            "validation_loss" if denoises or finds_goals else "validation_ratio_to_zero_velocity": {
-                name: round(value, 4) for name, value in best["validation"].items()
-            },
-            "chosen_at_step": best["step"],
-        },
+        figures=figures(best, "validation_loss" if denoises or finds_goals else "validation_ratio_to_zero_velocity"),
         radius=radius or {},
         recipe=recipe.name,
-        training={
-            "scenes": best["step"] * recipe.batch,
-            "minutes": round(best["seconds"] / 60, 1),
-            "device": best.get("device", "cpu"),
-            "seed": recipe.seed,
-        },
+        training=cost(best, recipe),
         **{"system": recipe.model, **recipe.card},
     )
     if denoises:

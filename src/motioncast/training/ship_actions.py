@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 from motioncast.core.card import ModelCard
@@ -10,6 +9,7 @@ from motioncast.datasets import cmu_actions, kitchen
 from motioncast.models import build
 from motioncast.training.export_actions import export_actions
 from motioncast.training.recipe import Recipe
+from motioncast.training.record import best_look, cost, figures
 from motioncast.training.weights import load_weights
 
 KITCHEN = (
@@ -39,8 +39,7 @@ def ship_actions(run: Path, recipe: Recipe, folder: Path) -> ModelCard:
     model = build(recipe.model, recipe.sizes)
     load_weights(model, run / "best.pt")
     config = model.config
-    lines = (run / "metrics.jsonl").read_text(encoding="utf-8").splitlines()
-    best = min(map(json.loads, lines), key=lambda entry: entry["score"])
+    best = best_look(run)
     of_kitchen = recipe.task == "actions"
     labels, objects = (kitchen.LABELS, kitchen.OBJECTS) if of_kitchen else (cmu_actions.LABELS, ())
     card = ModelCard(
@@ -55,17 +54,9 @@ def ship_actions(run: Path, recipe: Recipe, folder: Path) -> ModelCard:
         needs={"labels": list(labels), "objects": list(objects), "noise": config.noise},
         data=KITCHEN if of_kitchen else CMU,
         licence=LICENCES[recipe.task],
-        figures={
-            "validation": {name: round(value, 4) for name, value in best["validation"].items()},
-            "chosen_at_step": best["step"],
-        },
+        figures=figures(best, "validation"),
         recipe=recipe.name,
-        training={
-            "scenes": best["step"] * recipe.batch,
-            "minutes": round(best["seconds"] / 60, 1),
-            "device": best.get("device", "cpu"),
-            "seed": recipe.seed,
-        },
+        training=cost(best, recipe),
         **{"system": recipe.model, **recipe.card},
     )
     return export_actions(model, card, folder)

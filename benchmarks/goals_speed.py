@@ -1,6 +1,6 @@
 """How long ten characteristic poses of one person take, with and without refinement.
 
-    python benchmarks/goals_speed.py [--threads 2] [--rounds 20] [--model characteristic-poses]
+    python benchmarks/goals_speed.py --model FILE.onnx [--threads 2] [--rounds 20]
 
 Whole calls of ``forecast``, from the scene to the answer; medians and quartiles.
 """
@@ -21,7 +21,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--rounds", type=int, default=20)
-    parser.add_argument("--model", default="characteristic-poses", help="name of a model of goals, or an ONNX file")
+    parser.add_argument("--model", required=True, help="name of a model of goals, or an ONNX file")
     asked = parser.parse_args()
     scene = walkers(people=1, frames=30, fps=30)
     model = load(asked.model).with_threads(asked.threads)
